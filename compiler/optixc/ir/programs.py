@@ -1,0 +1,39 @@
+"""The eight kinds of programs, their prefixes and the letters that the availability table uses."""
+
+from __future__ import annotations
+
+from enum import Enum
+
+
+class ProgramKind(Enum):
+    """A kind of program; the value is the prefix between the double underscores."""
+
+    RAYGEN = "raygen"
+    MISS = "miss"
+    CLOSESTHIT = "closesthit"
+    ANYHIT = "anyhit"
+    INTERSECTION = "intersection"
+    EXCEPTION = "exception"
+    DIRECT_CALLABLE = "direct_callable"
+    CONTINUATION_CALLABLE = "continuation_callable"
+
+    @property
+    def prefix(self) -> str:
+        """What names of programs of this kind begin with, e.g. `__raygen__`."""
+        return f"__{self.value}__"
+
+
+def program_kind(name: str) -> ProgramKind | None:
+    """The kind that the prefix of `name` tells, or None for an ordinary name."""
+    return next((kind for kind in ProgramKind if name.startswith(kind.prefix)), None)
+
+
+RG = ProgramKind.RAYGEN
+MS = ProgramKind.MISS
+CH = ProgramKind.CLOSESTHIT
+AH = ProgramKind.ANYHIT
+IS = ProgramKind.INTERSECTION
+EX = ProgramKind.EXCEPTION
+DC = ProgramKind.DIRECT_CALLABLE
+CC = ProgramKind.CONTINUATION_CALLABLE
+ALL_PROGRAMS: frozenset[ProgramKind] = frozenset(ProgramKind)

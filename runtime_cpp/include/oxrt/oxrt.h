@@ -1,0 +1,245 @@
+/* The C interface of liboxrt, the runtime of optixc pipelines: contexts, acceleration structures, pipelines, SBTs, launches.
+ *
+ * Objects are opaque; whoever creates one destroys it. Every function returns an OxrtResult; a sentence about the last failure on the
+ * calling thread is given by oxrtGetLastErrorMessage. Functions may be called from any thread; calls on one object that change it may
+ * not overlap, launches of one pipeline are serialised. Arrays passed in are copied unless their comment says otherwise.
+ *
+ * This very file is read by cffi, so it holds no inline functions, no macros as sizes and no aligned attributes.
+ */
+#ifndef OXRT_OXRT_H
+#define OXRT_OXRT_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#if defined(__GNUC__)
+#define OXRT_API __attribute__((visibility("default")))
+#else
+#define OXRT_API
+#endif
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* OptiX's result codes with OptiX's values. */
+typedef enum OxrtResult {
+    OXRT_SUCCESS = 0,
+    OXRT_ERROR_INVALID_VALUE = 7001,
+    OXRT_ERROR_HOST_OUT_OF_MEMORY = 7002,
+    OXRT_ERROR_INVALID_OPERATION = 7003,
+    OXRT_ERROR_FILE_IO_ERROR = 7004,
+    OXRT_ERROR_INVALID_FILE_FORMAT = 7005,
+    OXRT_ERROR_INVALID_DEVICE_CONTEXT = 7051,
+    OXRT_ERROR_VALIDATION_FAILURE = 7053,
+    OXRT_ERROR_LAUNCH_FAILURE = 7050,
+    OXRT_ERROR_PIPELINE_LINK_ERROR = 7251,
+    OXRT_ERROR_NOT_SUPPORTED = 7800,
+    OXRT_ERROR_UNSUPPORTED_ABI_VERSION = 7801,
+    OXRT_ERROR_LIBRARY_NOT_FOUND = 7804,
+    OXRT_ERROR_ENTRY_SYMBOL_NOT_FOUND = 7805,
+    OXRT_ERROR_LAUNCH_CANCELLED = 7900,
+    OXRT_ERROR_INTERNAL_ERROR = 7990
+} OxrtResult;
+
+typedef struct OxrtContextImpl* OxrtContext;
+typedef struct OxrtAccelImpl* OxrtAccel;
+typedef struct OxrtPipelineImpl* OxrtPipeline;
+typedef uint64_t OxrtTraversableHandle;
+
+OXRT_API const char* oxrtGetErrorName(OxrtResult result);
+OXRT_API const char* oxrtGetErrorString(OxrtResult result);
+/* The sentence that explains the last failure on this thread; valid until the thread's next call. Never NULL. */
+OXRT_API const char* oxrtGetLastErrorMessage(void);
+OXRT_API const char* oxrtGetVersion(void);
+
+/* ---- context ---------------------------------------------------------------------------------------------------------------- */
+
+/* level 1 fatal, 2 error, 3 warning, 4 print. Called on the thread that has something to say; must not call back into oxrt. */
+typedef void (*OxrtLogCallback)(unsigned level, const char* tag, const char* message, void* data);
+
+typedef struct OxrtContextOptions {
+    OxrtLogCallback logCallback; /* may be NULL */
+    void* logCallbackData;
+    unsigned logCallbackLevel;   /* 0 to 4 */
+    unsigned validation;         /* 0 or 1 */
+    unsigned threads;            /* bounds launches and builds; 0: as many as the process may use */
+    const char* embreePath;      /* libembree4 to load; NULL: OXRT_EMBREE, else the one already loaded, else the system's */
+} OxrtContextOptions;
+
+OXRT_API OxrtResult oxrtContextCreate(const OxrtContextOptions* options, OxrtContext* context);
+/* Destroys everything that was made from the context as well. Waits for launches. */
+OXRT_API OxrtResult oxrtContextDestroy(OxrtContext context);
+OXRT_API OxrtResult oxrtContextSetLogCallback(OxrtContext context, OxrtLogCallback callback, void* data, unsigned level);
+
+typedef struct OxrtContextInfo {
+    unsigned threads;
+    unsigned embreeVersion;         /* 40400 for 4.4.0 */
+    unsigned embreeMaxInstanceLevels;
+    unsigned embreeBackfaceCulling;
+    unsigned isa;                   /* OXRT_ISA_... of pipeline.h: the best that this machine runs */
+    char embreePath[512];
+} OxrtContextInfo;
+
+OXRT_API OxrtResult oxrtContextGetInfo(OxrtContext context, OxrtContextInfo* info);
+
+/* ---- acceleration structures -------------------------------------------------------------------------------------------------- */
+
+enum { OXRT_BUILD_FLAG_ALLOW_UPDATE = 1, OXRT_BUILD_FLAG_ALLOW_COMPACTION = 2, OXRT_BUILD_FLAG_PREFER_FAST_TRACE = 4,
+       OXRT_BUILD_FLAG_PREFER_FAST_BUILD = 8, OXRT_BUILD_FLAG_ALLOW_RANDOM_VERTEX_ACCESS = 16,
+       OXRT_BUILD_FLAG_ALLOW_RANDOM_INSTANCE_ACCESS = 32,
+       OXRT_BUILD_FLAG_NOT_ROBUST = 65536 /* ours: Embree's fast mode, which leaks at edges */ };
+
+enum { OXRT_BUILD_INPUT_TRIANGLES = 0x2141, OXRT_BUILD_INPUT_CUSTOM_PRIMITIVES = 0x2142, OXRT_BUILD_INPUT_INSTANCES = 0x2143 };
+
+typedef struct OxrtMotionOptions {
+    uint16_t numKeys; /* 0 or 1: static */
+    uint16_t flags;
+    float timeBegin, timeEnd;
+} OxrtMotionOptions;
+
+typedef struct OxrtInstance {
+    float transform[12]; /* object to world, 3x4 row major */
+    uint32_t instanceId;
+    uint32_t sbtOffset;
+    uint32_t visibilityMask;
+    uint32_t flags;
+    OxrtTraversableHandle traversable;
+} OxrtInstance;
+
+/* One build input; `type` says which members count. flags: numSbtRecords words, NULL = all 0.
+   sbtIndexOffsets: one uint32 per primitive or NULL. */
+typedef struct OxrtBuildInput {
+    uint32_t type;
+    uint32_t numSbtRecords;             /* at least 1 */
+    const uint32_t* flags;
+    const uint32_t* sbtIndexOffsets;
+    uint32_t primitiveIndexOffset;
+    uint32_t numKeys;                   /* entries of `vertices`, `aabbs`; at least 1 */
+    const float* const* vertices;       /* triangles: one pointer per key to numVertices x 3 floats */
+    uint64_t numVertices;
+    const uint32_t* indices;            /* triangles: numPrimitives x 3, NULL: vertices in threes */
+    const float* preTransform;          /* triangles: 3x4 row major or NULL */
+    const float* const* aabbs;          /* custom primitives: one pointer per key to numPrimitives x 6 floats */
+    uint64_t numPrimitives;
+    const OxrtInstance* instances;      /* instances: numPrimitives */
+} OxrtBuildInput;
+
+typedef struct OxrtAccelBuildOptions {
+    uint32_t buildFlags;
+    OxrtMotionOptions motion;
+} OxrtAccelBuildOptions;
+
+typedef struct OxrtAccelInfo {
+    OxrtTraversableHandle handle;
+    float aabb[6];          /* min xyz, max xyz; min > max if empty */
+    uint64_t memoryUsage;   /* bytes: Embree's and ours */
+    uint64_t primitiveCount;
+    uint32_t isGas;
+    uint32_t needs;         /* OXRT_SCENE_... of pipeline.h */
+} OxrtAccelInfo;
+
+/* Builds at once; on failure nothing is made. An IAS keeps its children alive. */
+OXRT_API OxrtResult oxrtAccelBuild(OxrtContext context, const OxrtAccelBuildOptions* options, const OxrtBuildInput* inputs,
+                                   unsigned numInputs, OxrtAccel* accel);
+/* Same inputs with other coordinates, needs ALLOW_UPDATE; handle stays. */
+OXRT_API OxrtResult oxrtAccelUpdate(OxrtAccel accel, const OxrtBuildInput* inputs, unsigned numInputs);
+OXRT_API OxrtResult oxrtAccelGetInfo(OxrtAccel accel, OxrtAccelInfo* info);
+/* The handle is stale from here on; memory goes when no IAS and no launch uses it. */
+OXRT_API OxrtResult oxrtAccelDestroy(OxrtAccel accel);
+
+/* ---- textures ----------------------------------------------------------------------------------------------------------------- */
+
+typedef struct OxrtTextureOptions {
+    const void* texels;  /* copied; height x width x channels */
+    uint32_t width, height, channels; /* channels 1 to 4 */
+    uint32_t format, filter, wrapU, wrapV; /* OXRT_TEXTURE_..., OXRT_FILTER_..., OXRT_WRAP_... of pipeline.h */
+    uint32_t srgb;       /* decode sRGB when reading uint8 colour */
+} OxrtTextureOptions;
+
+OXRT_API OxrtResult oxrtTextureCreate(OxrtContext context, const OxrtTextureOptions* options, uint64_t* handle);
+OXRT_API OxrtResult oxrtTextureDestroy(OxrtContext context, uint64_t handle);
+
+/* ---- pipelines, program groups, SBT ------------------------------------------------------------------------------------------- */
+
+/* Loads a compiled pipeline (.so made by optixc). */
+OXRT_API OxrtResult oxrtPipelineLoad(OxrtContext context, const char* path, OxrtPipeline* pipeline);
+OXRT_API OxrtResult oxrtPipelineDestroy(OxrtPipeline pipeline);
+
+typedef struct OxrtPipelineInfo {
+    uint32_t lanes;
+    uint32_t isa;
+    uint32_t programCount;
+    uint32_t paramsSize;
+    uint32_t maxTraceDepth;
+    uint32_t uid;
+} OxrtPipelineInfo;
+
+OXRT_API OxrtResult oxrtPipelineGetInfo(OxrtPipeline pipeline, OxrtPipelineInfo* info);
+/* The number of the program with this full name, -1 if there is none. */
+OXRT_API OxrtResult oxrtPipelineFindProgram(OxrtPipeline pipeline, const char* name, int32_t* program);
+
+typedef enum OxrtProgramGroupKind {
+    OXRT_PROGRAM_GROUP_KIND_RAYGEN = 0x2421,
+    OXRT_PROGRAM_GROUP_KIND_MISS = 0x2422,
+    OXRT_PROGRAM_GROUP_KIND_EXCEPTION = 0x2423,
+    OXRT_PROGRAM_GROUP_KIND_HITGROUP = 0x2424,
+    OXRT_PROGRAM_GROUP_KIND_CALLABLES = 0x2425
+} OxrtProgramGroupKind;
+
+/* Names with their prefix; NULL for none. */
+typedef struct OxrtProgramGroupDesc {
+    OxrtProgramGroupKind kind;
+    const char* raygen;
+    const char* miss;
+    const char* exception;
+    const char* closesthit;
+    const char* anyhit;
+    const char* intersection;
+    const char* directCallable;
+    const char* continuationCallable;
+} OxrtProgramGroupDesc;
+
+/* Writes the 32-byte header of a record that runs this group in this pipeline. `dataSize`: bytes that follow the header. */
+OXRT_API OxrtResult oxrtSbtRecordPackHeader(OxrtPipeline pipeline, const OxrtProgramGroupDesc* group, uint32_t dataSize, void* record);
+
+/* Records: 16-byte aligned, strides multiples of 16. The memory stays the caller's and must live until the launch ended. */
+typedef struct OxrtShaderBindingTable {
+    const void* raygenRecord;
+    const void* exceptionRecord;
+    const void* missRecords;
+    uint32_t missStride, missCount;
+    const void* hitgroupRecords;
+    uint32_t hitgroupStride, hitgroupCount;
+    const void* callableRecords;
+    uint32_t callableStride, callableCount;
+} OxrtShaderBindingTable;
+
+/* ---- launch ------------------------------------------------------------------------------------------------------------------- */
+
+typedef struct OxrtLaunchReport {
+    int32_t faultCode;        /* OXRT_FAULT_... of pipeline.h, 0 if the launch was fine */
+    uint32_t index[3];        /* launch index of the fault */
+    uint32_t line;
+    char path[256];
+    char message[512];
+} OxrtLaunchReport;
+
+/* Runs width x height x depth launch indices and returns when all are done. `params` is copied (paramsSize bytes). */
+OXRT_API OxrtResult oxrtLaunch(OxrtPipeline pipeline, const void* params, size_t paramsSize, const OxrtShaderBindingTable* sbt,
+                               uint32_t width, uint32_t height, uint32_t depth);
+/* The same in steps, for a caller that must stay responsive: begin, then wait until *done is 1. A begun launch must be waited for. */
+OXRT_API OxrtResult oxrtLaunchBegin(OxrtPipeline pipeline, const void* params, size_t paramsSize, const OxrtShaderBindingTable* sbt,
+                                    uint32_t width, uint32_t height, uint32_t depth);
+/* The calling thread works too, for about timeoutMs; the result is the launch's once *done is 1. */
+OXRT_API OxrtResult oxrtLaunchWait(OxrtPipeline pipeline, unsigned timeoutMs, int* done);
+OXRT_API OxrtResult oxrtLaunchCancel(OxrtPipeline pipeline);
+/* About the last launch of the pipeline that failed. */
+OXRT_API OxrtResult oxrtPipelineGetLaunchReport(OxrtPipeline pipeline, OxrtLaunchReport* report);
+/* Progress of the launch that runs: launch indices done and all. */
+OXRT_API OxrtResult oxrtLaunchGetProgress(OxrtPipeline pipeline, uint64_t* done, uint64_t* total);
+
+#ifdef __cplusplus
+}
+#endif
+#endif
