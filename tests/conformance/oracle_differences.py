@@ -1,0 +1,200 @@
+"""Where a correct answer of ours may differ from the recorded one: every such difference has its name, rule and reason here.
+
+A ray that is recorded differently must fall under one of these, and its own log must still be a lawful run (`oracle_compare.unlawful`).
+"""
+
+from __future__ import annotations
+
+import json
+import math
+import re
+from collections import Counter
+from typing import Any
+
+import brute_force
+from oracle_compare import close, decide, mismatches, ray_scale, same_sequence
+from oracle_events import RayResult
+from oracle_files import Probe, number
+
+ORDER = "any-hit order"
+REPETITION = "any-hit repetition"
+BEYOND = "calls beyond the closest hit"
+FIRST_ACCEPTED = "first accepted hit"
+COINCIDENT = "coincident hits"
+EDGE = "isolated edge"
+
+REASONS = {
+    ORDER: "any-hit and intersection programs run in traversal order, which OptiX leaves open; the multiset of calls is the same",
+    REPETITION: "without REQUIRE_SINGLE_ANYHIT_CALL OptiX may call any-hit again for a primitive (spatial splits there, none here)",
+    BEYOND: "a candidate behind the hit that is accepted in the end is seen or not, by the traversal order",
+    FIRST_ACCEPTED: "a terminated ray or a counting any-hit keeps the first accepted hit in traversal order, not the nearest",
+    COINCIDENT: "which of several hits at one distance wins is left open",
+    EDGE: "an isolated edge follows a top-left rule there, is closed in Embree",
+}
+
+# Driver bugs and undefined behaviour that the oracle's README names; a probe that matches is compared by the text beside it.
+NOT_COPIED = {
+    r"01_sbt-primitiveIndexOffset$": "primitiveIndexOffset 0xFFFFFFF0 comes back as a 30-bit field there",
+    r"01_sbt-primitiveIndexOffset_random_access$": "out-of-range primitive indices return some clamped primitive there",
+    r"06_motion-.*zero_range": "timeBegin == timeEnd: intrinsic and traversal disagree there; refused by name here",
+    r"06_motion-.*reversed_range": "timeBegin > timeEnd is undefined there; refused by name here",
+    r"07_custom-hitkind_25[45]$": "hit kinds 254 and 255 pretend to be triangles there and crash; refused by name here",
+    r"13_degenerate-degenerate_triangles$": "an infinite vertex is hit with t = NaN there",
+}
+
+REQUIRE_SINGLE = 2
+TERMINATE_ON_FIRST_HIT = 4
+COUNTING_MODES = (2, 4, 5, 6)
+# Two computed distances of one crossing differ by rounding only; hits this near to each other count as one place.
+SAME_PLACE = 1e-6
+# What depends on the order in which candidates were seen.
+ORDER_KEYS = frozenset({"p", "p1", "tmaxBefore", "tmaxAfter"})
+
+
+def not_copied(probe: Probe) -> str | None:
+    """Why a probe records something that is not to be copied, or None."""
+    return next((reason for pattern, reason in NOT_COPIED.items() if re.search(pattern, probe.id)), None)
+
+
+class Known:
+    """Every candidate that was recorded anywhere for a ray of a scene, whatever its any-hit program did with it."""
+
+    def __init__(self, probes: list[Probe]) -> None:
+        self._hits: dict[str, set[tuple[int, float]]] = {}
+        for probe in probes:
+            for ray in probe.rays:
+                hits = self._hits.setdefault(_place(probe, ray["in"]), set())
+                hits.update((event["prim"], round(number(event["tmax"]), 5)) for event in ray["events"] if event["ev"] in ("AH", "CH"))
+
+    def has(self, probe: Probe, given: dict[str, Any], event: dict[str, Any]) -> bool:
+        """Whether this candidate was ever recorded for this ray, or is found by brute force."""
+        if any(prim == event["prim"] and close(t, event["tmax"], 2e-5) for prim, t in self._hits.get(_place(probe, given), ())):
+            return True
+        found = brute_force.scene_candidates(probe.scene, given)
+        return any(hit.primitive == event["prim"] and close(hit.t, event["tmax"], 1e-5, ray_scale(given)) for hit in found)
+
+
+def _place(probe: Probe, given: dict[str, Any]) -> str:
+    shape = [{key: value for key, value in node.items() if key != "buildFlags"} for node in probe.scene]
+    return json.dumps([shape, given["root"], given["o"], given["d"], given["time"]])
+
+
+def compare(probe: Probe, index: int, result: RayResult, known: Known) -> tuple[set[str], list[str]]:
+    """The named differences that explain our result for a ray, and what stays unexplained."""
+    recorded = probe.rays[index]
+    given = recorded["in"]
+    events = result.events
+    trimmed = recorded["nev"] > len(recorded["events"])
+    if trimmed:  # the files left out one kind of event
+        kinds = {event["ev"] for event in recorded["events"]}
+        events = [event for event in events if event["ev"] in kinds]
+    strict = _strict(events, recorded, given)
+    if not strict and result.payload == recorded["p"] and (not trimmed or result.event_count == recorded["nev"]):
+        return set(), []
+    if brute_force.passes_edge(probe.scene, given):
+        return {EDGE}, []
+    return _explain(probe, given, events, recorded["events"], known, strict)
+
+
+def _strict(events: list[dict[str, Any]], recorded: dict[str, Any], given: dict[str, Any]) -> list[str]:
+    if not same_sequence(events, recorded["events"]):
+        return [f"events {_brief(events)} recorded {_brief(recorded['events'])}"]
+    scale = ray_scale(given)
+    return [text for ours, theirs in zip(events, recorded["events"], strict=True) for text in mismatches(ours, theirs, scale)]
+
+
+def _brief(events: list[dict[str, Any]]) -> str:
+    return " ".join(f"{event['ev']}{event['rec']}.{event.get('prim', '-')}@{number(event.get('tmax', event.get('t', 0))):g}" for event in events)
+
+
+def _explain(probe: Probe, given: dict[str, Any], ours: list[dict[str, Any]], theirs: list[dict[str, Any]], known: Known,
+             strict: list[str]) -> tuple[set[str], list[str]]:
+    scale = ray_scale(given)
+    left_ours, left_theirs = _pair(ours, theirs, scale)
+    names = {ORDER} if not left_ours and not left_theirs else set()
+    if names and sum(event["ev"] in ("AH", "IS") for event in ours) < 2:
+        return set(), strict
+    names |= _drop_repeated(probe, left_ours, left_theirs, ours, theirs, scale)
+    if _order_decides(probe, given, ours + theirs):
+        names |= _drop(left_ours, left_theirs, FIRST_ACCEPTED, lambda event: _candidate(probe, given, event, known))
+    names |= _drop(left_ours, left_theirs, BEYOND, lambda event: _beyond(event, ours, theirs) and _candidate(probe, given, event, known))
+    if _coincident(probe, given, ours + theirs):
+        names |= _drop(left_ours, left_theirs, COINCIDENT, lambda event: _candidate(probe, given, event, known))
+    if left_ours or left_theirs:
+        return names, [*strict, f"unexplained: ours {_brief(left_ours)} recorded {_brief(left_theirs)}"]
+    return names, []
+
+
+def _pair(ours: list[dict[str, Any]], theirs: list[dict[str, Any]], scale: float) -> tuple[list[dict[str, Any]], list[dict[str, Any]]]:
+    """What is left after each recorded event has taken one of ours that agrees with it but for what the order decides."""
+    left, missing = list(ours), []
+    for event in theirs:
+        skip = ORDER_KEYS | ({"tmax"} if event["ev"] == "IS" else set())
+        match = next((mine for mine in left if mine["ev"] == event["ev"] and not mismatches(mine, event, scale, frozenset(skip))), None)
+        if match is None:
+            missing.append(event)
+        else:
+            left.remove(match)
+    return left, missing
+
+
+def _drop_repeated(probe: Probe, left_ours: list[dict[str, Any]], left_theirs: list[dict[str, Any]], ours: list[dict[str, Any]],
+                   theirs: list[dict[str, Any]], scale: float) -> set[str]:
+    flags = [flag for node in probe.scene for item in node.get("buildInputs", []) for flag in item["flags"]]
+    single = all(flag & REQUIRE_SINGLE for flag in flags)
+
+    def repeated(event: dict[str, Any], all_events: list[dict[str, Any]]) -> bool:
+        same = [other for other in all_events if other["ev"] == event["ev"] == "AH" and other["rec"] == event["rec"]
+                and other["prim"] == event["prim"] and close(number(other["tmax"]), number(event["tmax"]), SAME_PLACE, scale)]
+        return len(same) > 1
+
+    before = len(left_ours) + len(left_theirs)
+    if not single:
+        left_ours[:] = [event for event in left_ours if not repeated(event, ours)]
+    left_theirs[:] = [event for event in left_theirs if not repeated(event, theirs)]
+    return {REPETITION} if len(left_ours) + len(left_theirs) < before else set()
+
+
+def _drop(left_ours: list[dict[str, Any]], left_theirs: list[dict[str, Any]], name: str, rule: Any) -> set[str]:
+    before = len(left_ours) + len(left_theirs)
+    left_ours[:] = [event for event in left_ours if not rule(event)]
+    left_theirs[:] = [event for event in left_theirs if not rule(event)]
+    return {name} if len(left_ours) + len(left_theirs) < before else set()
+
+
+def _candidate(probe: Probe, given: dict[str, Any], event: dict[str, Any], known: Known) -> bool:
+    return event["ev"] in ("IS", "RP") or (event["ev"] in ("AH", "CH") and known.has(probe, given, _with_number(event)))
+
+
+def _with_number(event: dict[str, Any]) -> dict[str, Any]:
+    return {**event, "tmax": number(event["tmax"])}
+
+
+def _order_decides(probe: Probe, given: dict[str, Any], events: list[dict[str, Any]]) -> bool:
+    """Whether the ray keeps the first accepted hit: by its flag, by a terminating or by a counting any-hit program."""
+    if given["flags"] & TERMINATE_ON_FIRST_HIT:
+        return True
+    records = {hit["data"]["id"]: hit["data"] for hit in probe.data["hitgroups"]}
+    return any(event["ev"] == "AH" and records[event["rec"]]["ahMode"] in COUNTING_MODES for event in events)
+
+
+def _beyond(event: dict[str, Any], ours: list[dict[str, Any]], theirs: list[dict[str, Any]]) -> bool:
+    """Whether an any-hit or intersection call lies behind the hit that both sides keep in the end."""
+    ends = [number(last["tmax"]) for events in (ours, theirs) for last in events if last["ev"] == "CH"]
+    if event["ev"] in ("IS", "RP"):
+        return bool(ends)
+    return event["ev"] == "AH" and bool(ends) and number(event["tmax"]) > max(ends)
+
+
+def _coincident(probe: Probe, given: dict[str, Any], events: list[dict[str, Any]]) -> bool:
+    """Whether the ray has two different candidates at one distance."""
+    places = Counter()
+    for event in {(event["ev"], event["rec"], event["prim"], event.get("instIdx")): event for event in events
+                  if event["ev"] in ("AH", "CH")}.values():
+        places[round(number(event["tmax"]), 4)] += 1
+    distances = sorted(hit.t for hit in brute_force.scene_candidates(probe.scene, given))
+    return any(count > 1 for count in places.values()) or any(
+        math.isfinite(b) and close(a, b, SAME_PLACE) for a, b in zip(distances, distances[1:], strict=False))
+
+
+__all__ = ["REASONS", "Known", "compare", "decide", "not_copied"]
