@@ -1,0 +1,9 @@
+/* All that the C++ of a compiled pipeline includes (and lanes.h for packets). No C++ standard header: see vectors.h. */
+#ifndef OXRT_DEVICE_H
+#define OXRT_DEVICE_H
+
+#include <oxrt/math.h>
+#include <oxrt/device_memory.h>
+#include <oxrt/device_trace.h>
+
+#endif

@@ -1,0 +1,240 @@
+/* The trace in flight, and the device functions that read it. */
+#ifndef OXRT_DEVICE_RAY_H
+#define OXRT_DEVICE_RAY_H
+
+#include <oxrt/device_thread.h>
+#include <oxrt/embree.h>
+
+namespace oxrt {
+inline namespace OXRT_ISA {
+
+/* OptiX's flag words. */
+enum RayFlag : uint32_t {
+    RAY_DISABLE_ANYHIT = 1,
+    RAY_ENFORCE_ANYHIT = 2,
+    RAY_TERMINATE_ON_FIRST_HIT = 4,
+    RAY_DISABLE_CLOSESTHIT = 8,
+    RAY_CULL_BACK_FACING = 16,
+    RAY_CULL_FRONT_FACING = 32,
+    RAY_CULL_DISABLED_ANYHIT = 64,
+    RAY_CULL_ENFORCED_ANYHIT = 128,
+    RAY_CULL_ANY = RAY_CULL_BACK_FACING | RAY_CULL_FRONT_FACING | RAY_CULL_DISABLED_ANYHIT | RAY_CULL_ENFORCED_ANYHIT
+};
+enum GeometryFlag : uint32_t { GEOMETRY_DISABLE_ANYHIT = 1, GEOMETRY_DISABLE_FACE_CULLING = 4 };
+enum InstanceFlag : uint32_t { INSTANCE_DISABLE_FACE_CULLING = 1, INSTANCE_FLIP_FACING = 2, INSTANCE_DISABLE_ANYHIT = 4,
+                               INSTANCE_ENFORCE_ANYHIT = 8 };
+enum HitKind : uint32_t { HIT_KIND_TRIANGLE_FRONT_FACE = 0xFE, HIT_KIND_TRIANGLE_BACK_FACE = 0xFF };
+enum RecordSlot { SLOT_CLOSESTHIT = 0, SLOT_ANYHIT = 1, SLOT_INTERSECTION = 2 };
+
+/* What became of a candidate. */
+enum class Verdict : uint32_t { Accept, Ignore, Terminate };
+
+/* One trace: the ray as the caller gave it, and the hit that the running program is about (the candidate in any-hit programs, the
+   closest accepted one in closest-hit programs). Traces without callbacks never give its address away, so that it stays in registers. */
+struct Ray {
+    RTCRayQueryContext context; /* first: Embree hands its address to the callbacks */
+    OxrtThread* thread;
+    void* payload;
+    const OxrtTraversableView* root;
+    float3 origin, direction;
+    float tmin, tmax, time;
+    uint32_t mask, flags, sbtOffset, sbtStride, missIndex;
+
+    /* the hit */
+    float t; /* what getRayTmax gives: see the kinds of programs there */
+    float u, v;
+    float3 normal; /* of a triangle: object space, not normalised */
+    uint32_t primitive; /* within its geometry */
+    const OxrtInstanceView* instance; /* null for a GAS traced directly */
+    const OxrtGeometry* geometry;
+    const OxrtRecordHeader* record;
+    uint32_t recordIndex;
+    uint32_t kind; /* of custom primitives, as reported */
+    uint32_t attributes[8];
+
+    /* while callbacks run */
+    Verdict verdict;
+    bool isTerminated;
+    float closest; /* t of the closest accepted hit, or the caller's tmax */
+    float closestInEmbree; /* what stands for `closest` in Embree's ray */
+    const RTCRay* objectRay;
+    RTCHit* embreeHit; /* null in occlusion queries */
+    RTCRay* embreeRay;
+    uint32_t committedKind;
+    uint32_t committedAttributes[8];
+};
+
+/* ---- payload -------------------------------------------------------------------------------------------------------------------- */
+
+template <int INDEX> OXRT_INLINE uint32_t getPayload(const Ray& ray) {
+    uint32_t word;
+    __builtin_memcpy(&word, static_cast<const char*>(ray.payload) + 4 * INDEX, 4);
+    return word;
+}
+template <int INDEX> OXRT_INLINE void setPayload(Ray& ray, uint32_t word) {
+    __builtin_memcpy(static_cast<char*>(ray.payload) + 4 * INDEX, &word, 4);
+}
+
+/* ---- the ray -------------------------------------------------------------------------------------------------------------------- */
+
+OXRT_INLINE float3 getWorldRayOrigin(const Ray& ray) { return ray.origin; }
+OXRT_INLINE float3 getWorldRayDirection(const Ray& ray) { return ray.direction; }
+/* Intersection and any-hit programs only. */
+OXRT_INLINE float3 getObjectRayOrigin(const Ray& ray) { return {ray.objectRay->org_x, ray.objectRay->org_y, ray.objectRay->org_z}; }
+OXRT_INLINE float3 getObjectRayDirection(const Ray& ray) { return {ray.objectRay->dir_x, ray.objectRay->dir_y, ray.objectRay->dir_z}; }
+OXRT_INLINE float getRayTmin(const Ray& ray) { return ray.tmin; }
+/* Any-hit: the candidate's t. Closest-hit: the hit's. Intersection: the closest accepted so far. Miss: the caller's tmax. */
+OXRT_INLINE float getRayTmax(const Ray& ray) { return ray.t; }
+OXRT_INLINE float getRayTime(const Ray& ray) { return ray.time; }
+OXRT_INLINE uint32_t getRayFlags(const Ray& ray) { return ray.flags; }
+OXRT_INLINE uint32_t getRayVisibilityMask(const Ray& ray) { return ray.mask; }
+
+/* ---- where the hit is --------------------------------------------------------------------------------------------------------------- */
+
+OXRT_INLINE uint32_t getPrimitiveIndex(const Ray& ray) { return ray.primitive + ray.geometry->primitiveIndexOffset; }
+OXRT_INLINE uint32_t localRecord(const Ray& ray) { return ray.geometry->recordOffsets ? ray.geometry->recordOffsets[ray.primitive] : 0; }
+OXRT_INLINE uint32_t getSbtGASIndex(const Ray& ray) { return ray.geometry->recordBase + localRecord(ray); }
+OXRT_INLINE uint32_t getInstanceId(const Ray& ray) { return ray.instance ? ray.instance->instanceId : ~0u; }
+OXRT_INLINE uint32_t getInstanceIndex(const Ray& ray) { return ray.instance ? uint32_t(ray.instance - ray.root->instances) : 0; }
+OXRT_INLINE uint64_t getGASTraversableHandle(const Ray& ray) { return ray.instance ? ray.instance->child->handle : ray.root->handle; }
+OXRT_INLINE constexpr uint32_t getClusterId(const Ray&) { return ~0u; }
+
+/* ---- transforms ----------------------------------------------------------------------------------------------------------------- */
+
+OXRT_INLINE uint32_t getTransformListSize(const Ray& ray) { return ray.instance ? 1 : 0; }
+OXRT_INLINE uint64_t getTransformListHandle(const Ray& ray, uint32_t index) { return ray.instance && index == 0 ? ray.instance->handle : 0; }
+
+OXRT_INLINE float3 transformPoint(const float* m, const float3& p) {
+    return {m[0] * p.x + m[1] * p.y + m[2] * p.z + m[3], m[4] * p.x + m[5] * p.y + m[6] * p.z + m[7],
+            m[8] * p.x + m[9] * p.y + m[10] * p.z + m[11]};
+}
+OXRT_INLINE float3 transformVector(const float* m, const float3& v) {
+    return {m[0] * v.x + m[1] * v.y + m[2] * v.z, m[4] * v.x + m[5] * v.y + m[6] * v.z, m[8] * v.x + m[9] * v.y + m[10] * v.z};
+}
+/* `inverse` is the matrix of the opposite direction. */
+OXRT_INLINE float3 transformNormal(const float* inverse, const float3& n) {
+    const float* m = inverse;
+    return {m[0] * n.x + m[4] * n.y + m[8] * n.z, m[1] * n.x + m[5] * n.y + m[9] * n.z, m[2] * n.x + m[6] * n.y + m[10] * n.z};
+}
+
+OXRT_INLINE float3 transformPointFromObjectToWorldSpace(const Ray& ray, const float3& p) {
+    return ray.instance ? transformPoint(ray.instance->objectToWorld, p) : p;
+}
+OXRT_INLINE float3 transformPointFromWorldToObjectSpace(const Ray& ray, const float3& p) {
+    return ray.instance ? transformPoint(ray.instance->worldToObject, p) : p;
+}
+OXRT_INLINE float3 transformVectorFromObjectToWorldSpace(const Ray& ray, const float3& v) {
+    return ray.instance ? transformVector(ray.instance->objectToWorld, v) : v;
+}
+OXRT_INLINE float3 transformVectorFromWorldToObjectSpace(const Ray& ray, const float3& v) {
+    return ray.instance ? transformVector(ray.instance->worldToObject, v) : v;
+}
+OXRT_INLINE float3 transformNormalFromObjectToWorldSpace(const Ray& ray, const float3& n) {
+    return ray.instance ? transformNormal(ray.instance->worldToObject, n) : n;
+}
+OXRT_INLINE float3 transformNormalFromWorldToObjectSpace(const Ray& ray, const float3& n) {
+    return ray.instance ? transformNormal(ray.instance->objectToWorld, n) : n;
+}
+
+OXRT_INLINE float3x4 matrixFrom(const float* m) {
+    return {{{m[0], m[1], m[2], m[3]}, {m[4], m[5], m[6], m[7]}, {m[8], m[9], m[10], m[11]}}};
+}
+OXRT_INLINE float3x4 identityTransform() { return {{{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}}}; }
+OXRT_INLINE float3x4 getObjectToWorldTransformMatrix(const Ray& ray) {
+    return ray.instance ? matrixFrom(ray.instance->objectToWorld) : identityTransform();
+}
+OXRT_INLINE float3x4 getWorldToObjectTransformMatrix(const Ray& ray) {
+    return ray.instance ? matrixFrom(ray.instance->worldToObject) : identityTransform();
+}
+
+/* ---- the hit ---------------------------------------------------------------------------------------------------------------------- */
+
+/* Which side of a triangle the ray meets: counter-clockwise in object space is the front, unless the instance flips it. */
+OXRT_INLINE bool isFrontFacing(const Ray& ray) {
+    const float3 direction = transformVectorFromWorldToObjectSpace(ray, ray.direction);
+    const float cosine = ray.normal.x * direction.x + ray.normal.y * direction.y + ray.normal.z * direction.z;
+    const bool isFlipped = ray.instance && (ray.instance->flags & INSTANCE_FLIP_FACING);
+    return (cosine < 0.0f) != isFlipped;
+}
+
+OXRT_INLINE bool isTriangleGeometry(const Ray& ray) { return ray.geometry->primitiveType == OXRT_PRIMITIVE_TRIANGLE; }
+OXRT_INLINE bool isCustomGeometry(const Ray& ray) { return ray.geometry->primitiveType == OXRT_PRIMITIVE_CUSTOM; }
+
+/* Kinds of the built-in primitives other than triangles; they are hit from the front only. */
+OXRT_INLINE constexpr uint32_t builtinHitKind(uint32_t primitiveType) {
+    switch (primitiveType) {
+    case OXRT_PRIMITIVE_QUADRATIC_BSPLINE: return 128;
+    case OXRT_PRIMITIVE_CUBIC_BSPLINE: return 130;
+    case OXRT_PRIMITIVE_LINEAR: return 132;
+    case OXRT_PRIMITIVE_CATMULL_ROM: return 134;
+    case OXRT_PRIMITIVE_FLAT_QUADRATIC_BSPLINE: return 136;
+    case OXRT_PRIMITIVE_SPHERE: return 138;
+    case OXRT_PRIMITIVE_CUBIC_BEZIER: return 140;
+    default: return 0;
+    }
+}
+OXRT_INLINE uint32_t getHitKind(const Ray& ray) {
+    if (isTriangleGeometry(ray))
+        return isFrontFacing(ray) ? HIT_KIND_TRIANGLE_FRONT_FACE : HIT_KIND_TRIANGLE_BACK_FACE;
+    return isCustomGeometry(ray) ? ray.kind : builtinHitKind(ray.geometry->primitiveType);
+}
+OXRT_INLINE bool isTriangleHit(const Ray& ray) { return getHitKind(ray) >= HIT_KIND_TRIANGLE_FRONT_FACE; }
+OXRT_INLINE bool isTriangleFrontFaceHit(const Ray& ray) { return getHitKind(ray) == HIT_KIND_TRIANGLE_FRONT_FACE; }
+OXRT_INLINE bool isTriangleBackFaceHit(const Ray& ray) { return getHitKind(ray) == HIT_KIND_TRIANGLE_BACK_FACE; }
+OXRT_INLINE constexpr bool isBackFaceHit(uint32_t kind) { return kind >= 128 && (kind & 1) != 0; }
+OXRT_INLINE constexpr bool isFrontFaceHit(uint32_t kind) { return !isBackFaceHit(kind); }
+OXRT_INLINE bool isBackFaceHit(const Ray& ray) { return isBackFaceHit(getHitKind(ray)); }
+OXRT_INLINE bool isFrontFaceHit(const Ray& ray) { return isFrontFaceHit(getHitKind(ray)); }
+OXRT_INLINE constexpr uint32_t getPrimitiveType(uint32_t kind) {
+    if (kind < 128)
+        return OXRT_PRIMITIVE_CUSTOM;
+    if (kind >= HIT_KIND_TRIANGLE_FRONT_FACE)
+        return OXRT_PRIMITIVE_TRIANGLE;
+    for (uint32_t type = OXRT_PRIMITIVE_QUADRATIC_BSPLINE; type <= OXRT_PRIMITIVE_CUBIC_BEZIER; ++type)
+        if (builtinHitKind(type) == (kind & ~1u))
+            return type;
+    return 0;
+}
+OXRT_INLINE uint32_t getPrimitiveType(const Ray& ray) { return ray.geometry->primitiveType; }
+
+OXRT_INLINE float2 getTriangleBarycentrics(const Ray& ray) { return {ray.u, ray.v}; }
+OXRT_INLINE float getCurveParameter(const Ray& ray) { return ray.u; }
+
+OXRT_INLINE float3 vertexOf(const OxrtGeometry& geometry, uint32_t index) {
+    const float* v = geometry.vertices + 3 * uint64_t(index);
+    return {v[0], v[1], v[2]};
+}
+using TriangleVertices = Tuple<float3, float3, float3>;
+OXRT_INLINE TriangleVertices triangleVertices(const OxrtGeometry& geometry, uint32_t primitive) {
+    const uint32_t* i = geometry.indices + 3 * uint64_t(primitive);
+    return makeTuple(vertexOf(geometry, i[0]), vertexOf(geometry, i[1]), vertexOf(geometry, i[2]));
+}
+/* Corners in object space, the pre-transform applied. */
+OXRT_INLINE TriangleVertices getTriangleVertexData(const Ray& ray) { return triangleVertices(*ray.geometry, ray.primitive); }
+
+/* Attribute words: the reported ones of a custom primitive, the barycentrics of a built-in one. */
+OXRT_INLINE uint32_t attributeWord(const Ray& ray, int index) {
+    if (isCustomGeometry(ray))
+        return ray.attributes[index];
+    return index == 0 ? floatAsUint(ray.u) : index == 1 ? floatAsUint(ray.v) : 0;
+}
+template <int INDEX> OXRT_INLINE uint32_t getAttribute(const Ray& ray) { return attributeWord(ray, INDEX); }
+template <class Attributes> OXRT_INLINE Attributes getAttributes(const Ray& ray) {
+    static_assert(sizeof(Attributes) <= sizeof(ray.attributes));
+    uint32_t words[8];
+    for (int i = 0; i < int(sizeof(Attributes) / 4); ++i)
+        words[i] = attributeWord(ray, i);
+    Attributes result;
+    __builtin_memcpy(&result, words, sizeof(Attributes));
+    return result;
+}
+
+/* ---- ends of any-hit programs: the program returns right after ------------------------------------------------------------------- */
+
+OXRT_INLINE void ignoreIntersection(Ray& ray) { ray.verdict = Verdict::Ignore; }
+OXRT_INLINE void terminateRay(Ray& ray) { ray.verdict = Verdict::Terminate; }
+
+}  // namespace OXRT_ISA
+}  // namespace oxrt
+
+#endif

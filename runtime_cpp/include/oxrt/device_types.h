@@ -1,0 +1,147 @@
+/* Types of device code beside numbers and vectors: arrays in host memory, fixed arrays, tuples, words of payload registers. */
+#ifndef OXRT_DEVICE_TYPES_H
+#define OXRT_DEVICE_TYPES_H
+
+#include <oxrt/number.h>
+
+namespace oxrt {
+inline namespace OXRT_ISA {
+
+using uint = uint32_t;
+
+/* A file and line of the shader; as a default argument it names the caller's, which #line maps to the author's file. */
+struct Place {
+    const char* file;
+    uint32_t line;
+    static constexpr Place current(const char* file = __builtin_FILE(), uint32_t line = __builtin_LINE()) { return {file, line}; }
+};
+
+/* ---- memory -------------------------------------------------------------------------------------------------------------------- */
+
+/* A view of host memory, C-contiguous. Negative indices do not wrap: they become very large. */
+template <class T, int RANK> struct Array {
+    T* data;
+    uint64_t shape[RANK];
+
+    template <class... I> OXRT_INLINE T& at(I... indices) const {
+        static_assert(sizeof...(I) == RANK);
+        return data[offset(indices...)];
+    }
+
+    template <class... I> OXRT_INLINE bool contains(I... indices) const {
+        int axis = 0;
+        return ((uint64_t(int64_t(indices)) < shape[axis++]) && ...);
+    }
+
+    template <class... I> OXRT_INLINE uint64_t offset(I... indices) const {
+        uint64_t result = 0;
+        int axis = 0;
+        ((result = axis == 0 ? position(indices) : result * shape[axis] + position(indices), ++axis), ...);
+        return result;
+    }
+
+private:
+    static OXRT_INLINE constexpr uint64_t position(int32_t i) { return uint64_t(int64_t(i)); }
+    static OXRT_INLINE constexpr uint64_t position(uint32_t i) { return i; }
+    static OXRT_INLINE constexpr uint64_t position(int64_t i) { return uint64_t(i); }
+    static OXRT_INLINE constexpr uint64_t position(uint64_t i) { return i; }
+};
+
+/* SIZE values of T, held by value; indices out of range read T{} and drop writes. */
+template <class T, int SIZE> struct FixedArray {
+    T items[SIZE];
+
+    OXRT_INLINE bool contains(int64_t i) const { return uint64_t(i) < uint64_t(SIZE); }
+    OXRT_INLINE T& operator[](int64_t i) { return items[i]; }
+    OXRT_INLINE const T& operator[](int64_t i) const { return items[i]; }
+    OXRT_INLINE T load(int64_t i) const { return contains(i) ? items[i] : T{}; }
+};
+
+/* ---- tuples -------------------------------------------------------------------------------------------------------------------- */
+
+template <class... T> struct Tuple;
+template <> struct Tuple<> {};
+template <class First, class... Rest> struct Tuple<First, Rest...> {
+    First first;
+    [[no_unique_address]] Tuple<Rest...> rest;
+};
+
+OXRT_INLINE constexpr Tuple<> makeTuple() { return {}; }
+template <class First, class... Rest> OXRT_INLINE constexpr Tuple<First, Rest...> makeTuple(First first, Rest... rest) {
+    return {first, makeTuple(rest...)};
+}
+
+template <int INDEX, class First, class... Rest> OXRT_INLINE constexpr auto& get(Tuple<First, Rest...>& tuple) {
+    if constexpr (INDEX == 0)
+        return tuple.first;
+    else
+        return get<INDEX - 1>(tuple.rest);
+}
+template <int INDEX, class First, class... Rest> OXRT_INLINE constexpr const auto& get(const Tuple<First, Rest...>& tuple) {
+    if constexpr (INDEX == 0)
+        return tuple.first;
+    else
+        return get<INDEX - 1>(tuple.rest);
+}
+
+/* ---- payload and attribute words ------------------------------------------------------------------------------------------------ */
+
+/* A value of another size than 4 bytes as whole 32-bit words, so that a struct of such fields is an array of words. */
+template <class T> struct Word {
+    uint32_t words[(sizeof(T) + 3) / 4];
+
+    Word() = default;
+    OXRT_INLINE Word(const T& value) {
+        words[0] = 0;
+        __builtin_memcpy(words, &value, sizeof(T));
+    }
+    OXRT_INLINE operator T() const {
+        T value;
+        __builtin_memcpy(&value, words, sizeof(T));
+        return value;
+    }
+};
+
+/* The payload of a trace without one, and of programs that use none. */
+struct NoPayload {};
+
+/* The same words as another struct. */
+template <class To, class From> OXRT_INLINE To bitCopy(const From& from) {
+    static_assert(sizeof(To) == sizeof(From));
+    To to;
+    __builtin_memcpy(&to, &from, sizeof(To));
+    return to;
+}
+
+/* ---- loops --------------------------------------------------------------------------------------------------------------------- */
+
+/* Python's range(start, stop, step): the number of turns is fixed before the first one, so that nothing overflows. */
+template <class T> struct Range {
+    uint64_t turns;
+    T value;
+    T step;
+
+    OXRT_INLINE constexpr Range(T start, T stop, T step_) : turns(0), value(start), step(step_) {
+        const int64_t distance = int64_t(stop) - int64_t(start);
+        const int64_t stride = int64_t(step_);
+        if (stride > 0 && distance > 0)
+            turns = (uint64_t(distance) + uint64_t(stride) - 1) / uint64_t(stride);
+        else if (stride < 0 && distance < 0)
+            turns = (uint64_t(-distance) + uint64_t(-stride) - 1) / uint64_t(-stride);
+    }
+
+    /* Gives the next value to `target`; false after the last one. */
+    OXRT_INLINE constexpr bool next(T& target) {
+        if (turns == 0)
+            return false;
+        --turns;
+        target = value;
+        value = T(value + step);
+        return true;
+    }
+};
+
+}  // namespace OXRT_ISA
+}  // namespace oxrt
+
+#endif
