@@ -17,12 +17,16 @@ OPEN_MISS = 1
 
 @ox.struct
 class Params:
-    """`samples` primary rays per pixel, each followed by `occlusion_rays` of length `radius`; `ray_counts` tells how many were traced."""
+    """A launch adds number `sample` of `samples` primary rays per pixel, followed by `occlusion_rays` of length `radius`.
+
+    `ray_counts` tells how many rays each pixel has taken so far.
+    """
 
     image: ox.Array2[float4]
     ray_counts: ox.Array2[uint32]
     scene: ox.Traversable
     camera: Pinhole
+    sample: int
     samples: int
     occlusion_rays: int
     radius: float
@@ -73,21 +77,17 @@ def openness(surface: Surface, first: uint32, seed: uint32) -> float:
 def __raygen__ambient_occlusion():
     i, size = ox.get_launch_index(), ox.get_launch_dimensions()
     pixel = i.y * size.x + i.x
-    total = 0.0
-    rays = 0
-    for sample in range(params.samples):
-        jitter = sobol_owen_2d(uint32(sample), pixel)
-        screen = float2((float(i.x) + jitter.x) / float(size.x), (float(i.y) + jitter.y) / float(size.y))
-        surface = Surface(float3(0.0), float3(0.0), 0)
-        ox.trace(params.scene, params.camera.eye, pinhole_direction(params.camera, screen), payload=surface)
-        rays += 1
-        if surface.hit != 0:
-            total += openness(surface, uint32(sample * params.occlusion_rays), pixel ^ 0x9E3779B9)
-            rays += params.occlusion_rays
-        else:
-            total += 1.0
-    params.image[i.y, i.x] = float4(float3(total / float(params.samples)), 1.0)
-    params.ray_counts[i.y, i.x] = uint32(rays)
+    jitter = sobol_owen_2d(uint32(params.sample), pixel)
+    screen = float2((float(i.x) + jitter.x) / float(size.x), (float(i.y) + jitter.y) / float(size.y))
+    surface = Surface(float3(0.0), float3(0.0), 0)
+    ox.trace(params.scene, params.camera.eye, pinhole_direction(params.camera, screen), payload=surface)
+    value = 1.0
+    rays = 1
+    if surface.hit != 0:
+        value = openness(surface, uint32(params.sample * params.occlusion_rays), pixel ^ 0x9E3779B9)
+        rays += params.occlusion_rays
+    params.image[i.y, i.x] += float4(float3(value), 1.0) / float(params.samples)
+    params.ray_counts[i.y, i.x] += uint32(rays)
 
 
 @ox.program
@@ -103,3 +103,8 @@ def __closesthit__surface(surface: Surface):
 @ox.program
 def __miss__open(opening: Opening):
     opening.open = 1.0
+
+
+@ox.program
+def __miss__nothing(surface: Surface):
+    """The payload already says that nothing was hit."""

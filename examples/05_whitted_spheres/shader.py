@@ -20,12 +20,16 @@ EPSILON = 1e-3
 
 @ox.struct
 class Params:
-    """A point light without fall-off; `ray_counts` tells how many rays each pixel took, shadow rays included."""
+    """A launch adds number `sample` of `samples` per pixel; `ray_counts` tells how many rays it took so far, shadow rays included.
+
+    The light is a point without fall-off.
+    """
 
     image: ox.Array2[float4]
     ray_counts: ox.Array2[uint32]
     scene: ox.Traversable
     camera: Pinhole
+    sample: int
     samples: int
     light_position: float3
     light_color: float3
@@ -107,25 +111,20 @@ params = ox.launch_params(Params)
 @ox.program
 def __raygen__pinhole():
     i, size = ox.get_launch_index(), ox.get_launch_dimensions()
-    total = float3(0.0)
-    rays = 0
-    for sample in range(params.samples):
-        jitter = sobol_owen_2d(uint32(sample), i.y * size.x + i.x)
-        screen = float2((float(i.x) + jitter.x) / float(size.x), (float(i.y) + jitter.y) / float(size.y))
-        ray = Radiance(float3(0.0), 1.0, 0, 1)
-        ox.trace(
-            params.scene,
-            params.camera.eye,
-            pinhole_direction(params.camera, screen),
-            sbt_offset=RADIANCE_RAY,
-            sbt_stride=RAY_TYPES,
-            miss_sbt_index=RADIANCE_RAY,
-            payload=ray,
-        )
-        total += ray.color
-        rays += ray.rays
-    params.image[i.y, i.x] = float4(total / float(params.samples), 1.0)
-    params.ray_counts[i.y, i.x] = uint32(rays)
+    jitter = sobol_owen_2d(uint32(params.sample), i.y * size.x + i.x)
+    screen = float2((float(i.x) + jitter.x) / float(size.x), (float(i.y) + jitter.y) / float(size.y))
+    ray = Radiance(float3(0.0), 1.0, 0, 1)
+    ox.trace(
+        params.scene,
+        params.camera.eye,
+        pinhole_direction(params.camera, screen),
+        sbt_offset=RADIANCE_RAY,
+        sbt_stride=RAY_TYPES,
+        miss_sbt_index=RADIANCE_RAY,
+        payload=ray,
+    )
+    params.image[i.y, i.x] += float4(ray.color, 1.0) / float(params.samples)
+    params.ray_counts[i.y, i.x] += uint32(ray.rays)
 
 
 @ox.device
