@@ -60,7 +60,8 @@ class IntrinsicParameter:
 class Intrinsic:
     """One device function. `cpp` is the C++ name; `since_interpreter` rules are keyed by `name`.
 
-    `optix` is OptiX's own name ("" for maths), so that a search for it finds the row.
+    `optix` is OptiX's own name ("" for maths), so that a search for it finds the row. A function with two parameter lists has two
+    rows: authors write `overload_of` where it is set, the IR names the row.
     """
 
     name: str
@@ -72,3 +73,4 @@ class Intrinsic:
     effect: Effect = Effect.PURE
     state: State = State.NONE
     allowed: frozenset[ProgramKind] = ALL_PROGRAMS
+    overload_of: str = ""
