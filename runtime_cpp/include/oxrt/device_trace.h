@@ -413,7 +413,7 @@ OXRT_INLINE void trace(OxrtThread& thread, uint64_t handle, const float3& origin
     ray.time = Programs::usesTime ? time : 0.0f;
     ray.mask = mask & 0xFF;
     ray.flags = flags & 0xFFFF;
-    ray.sbtOffset = sbtOffset & 15;
+    ray.sbtOffset = (sbtOffset | sbtStride >> 4) & 15; /* as in OptiX: the stride's bits 4 to 7 spill into the offset */
     ray.sbtStride = sbtStride & 15;
     ray.missIndex = missIndex;
     if constexpr (Programs::isValidated) {
