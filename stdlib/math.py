@@ -26,13 +26,6 @@ def safe_acos(x: float) -> float:
 
 
 @ox.device
-def smoothstep(low: float, high: float, x: float) -> float:
-    """0 below `low`, 1 above `high`, a cubic with zero slope at both ends between."""
-    t = ox.clamp((x - low) / (high - low), 0.0, 1.0)
-    return t * t * (3.0 - 2.0 * t)
-
-
-@ox.device
 def max_component(v: float3) -> float:
     """The largest of the three."""
     return ox.max(v.x, ox.max(v.y, v.z))

@@ -93,11 +93,11 @@ def hash_uint3(x: uint3) -> uint3:
 @ox.device
 def philox_round(counter: uint4, key: uint2) -> uint4:
     """One round of `philox`."""
-    product0 = uint64(counter.x) * uint64(0xD2511F53)
-    product1 = uint64(counter.z) * uint64(0xCD9E8D57)
-    high0 = uint32(product0 >> 32)
-    high1 = uint32(product1 >> 32)
-    return uint4(high1 ^ counter.y ^ key.x, uint32(product1 & 0xFFFFFFFF), high0 ^ counter.w ^ key.y, uint32(product0 & 0xFFFFFFFF))
+    low0 = counter.x * uint32(0xD2511F53)
+    low1 = counter.z * uint32(0xCD9E8D57)
+    high0 = ox.mul_hi(counter.x, uint32(0xD2511F53))
+    high1 = ox.mul_hi(counter.z, uint32(0xCD9E8D57))
+    return uint4(high1 ^ counter.y ^ key.x, low1, high0 ^ counter.w ^ key.y, low0)
 
 
 @ox.device
@@ -113,26 +113,16 @@ def philox(counter: uint4, key: uint2) -> uint4:
 
 
 @ox.device
-def reverse_bits(x: uint32) -> uint32:
-    """Bit 0 becomes bit 31, and so on."""
-    x = (x >> 16) | (x << 16)
-    x = ((x >> 8) & uint32(0x00FF00FF)) | ((x & uint32(0x00FF00FF)) << 8)
-    x = ((x >> 4) & uint32(0x0F0F0F0F)) | ((x & uint32(0x0F0F0F0F)) << 4)
-    x = ((x >> 2) & uint32(0x33333333)) | ((x & uint32(0x33333333)) << 2)
-    return ((x >> 1) & uint32(0x55555555)) | ((x & uint32(0x55555555)) << 1)
-
-
-@ox.device
 def owen_scramble(x: uint32, seed: uint32) -> uint32:
     """A nested uniform scramble of the digits of `x` in base 2, chosen by `seed`.
     B. Burley, "Practical Hash-based Owen Scrambling", 2020, after Laine and Karras."""
-    x = reverse_bits(x)
+    x = ox.reverse_bits(x)
     x += seed
     x ^= x * uint32(0x6C50B47C)
     x ^= x * uint32(0xB82F1E52)
     x ^= x * uint32(0xC7AFE638)
     x ^= x * uint32(0x8D22F6E6)
-    return reverse_bits(x)
+    return ox.reverse_bits(x)
 
 
 @ox.device
@@ -155,6 +145,6 @@ def sobol_owen_2d(index: uint32, seed: uint32) -> float2:
     hit every elementary interval once. Further pairs of dimensions: the same index with another seed (padding). Same source as
     `owen_scramble`."""
     shuffled = owen_scramble(index, hash_uint(seed))
-    x = owen_scramble(reverse_bits(shuffled), hash_uint(seed ^ uint32(0x68BC21EB)))
+    x = owen_scramble(ox.reverse_bits(shuffled), hash_uint(seed ^ uint32(0x68BC21EB)))
     y = owen_scramble(sobol_second(shuffled), hash_uint(seed ^ uint32(0x02E5BE93)))
     return float2(unit_float(x), unit_float(y))
