@@ -6,6 +6,7 @@ from collections.abc import Iterator
 
 import optixc as ox
 import pytest
+
 from harness import MODES, Harness
 
 

@@ -35,6 +35,7 @@ class Harness:
     def __init__(self, mode: str, context: ox.DeviceContext) -> None:
         self.mode = mode
         self.context = context
+        self.kept: dict[Any, Any] = {}  # program groups of a test file, by a name of its own
         self._modules: dict[str, Any] = {}
         self._pipelines: dict[Any, Any] = {}
 
@@ -77,9 +78,9 @@ class Harness:
     def recorder(self, kinds: tuple[str, ...], motion: bool, micromaps: bool) -> tuple[dict[Any, Any], Any]:
         """The event recorder for these kinds of hit groups: its groups by role or (kind, closest hit, any hit), and the pipeline."""
         key = ("recorder", kinds, motion, micromaps)
-        if ("groups", key) not in self._modules:
-            self._modules["groups", key] = self._recorder_groups(kinds)
-        groups = self._modules["groups", key]
+        if key not in self.kept:
+            self.kept[key] = self._recorder_groups(kinds)
+        groups = self.kept[key]
         options = ox.PipelineCompileOptions(uses_motion_blur=motion, allow_opacity_micromaps=micromaps)
         return groups, self.pipeline(key, groups.values(), options=options)
 

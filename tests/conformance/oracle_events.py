@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 import optixc as ox
 import recorder as layout
+
 from harness import Harness
 from oracle_files import Probe, number, numbers
 from oracle_scene import handle_of

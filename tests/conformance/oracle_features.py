@@ -12,6 +12,7 @@ from typing import Any
 
 import numpy as np
 import optixc as ox
+
 from harness import Harness
 from oracle_files import Probe
 from oracle_scene import build

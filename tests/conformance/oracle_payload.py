@@ -7,6 +7,7 @@ import re
 import numpy as np
 import optixc as ox
 import payload32
+
 from harness import Harness
 from oracle_files import Probe
 

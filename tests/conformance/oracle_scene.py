@@ -11,6 +11,7 @@ from typing import Any
 
 import numpy as np
 import optixc as ox
+
 from oracle_files import number, numbers
 
 INDEX_TYPES = {1: np.uint8, 2: np.uint16, 4: np.uint32}

@@ -5,9 +5,10 @@ from __future__ import annotations
 import math
 from typing import Any
 
+import pytest
+
 import brute_force
 import oracle_files
-import pytest
 from oracle_differences import not_copied
 from oracle_files import Probe, number
 

@@ -7,6 +7,7 @@ import math
 import numpy as np
 import optixc as ox
 import pytest
+
 from harness import Harness
 from scenes import boxes, calls, closest, gas, hitgroup, ias, instance, kinds, missed, ray, reported, trace
 

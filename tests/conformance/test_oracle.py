@@ -10,9 +10,10 @@ from __future__ import annotations
 from collections import Counter
 
 import optixc as ox
+import pytest
+
 import oracle_files
 import oracle_special
-import pytest
 from harness import Harness
 from oracle_compare import unlawful
 from oracle_differences import REASONS, Known, compare, not_copied

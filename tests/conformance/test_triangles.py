@@ -4,25 +4,22 @@ from __future__ import annotations
 
 import math
 
-import brute_force
 import numpy as np
 import optixc as ox
 import pytest
+
+import brute_force
 from harness import Harness
 from scenes import (
     CORNER,
-    DOWN,
     FAR,
     UP,
-    boxes,
     closest,
     gas,
     hitgroup,
     ias,
-    instance,
     kinds,
     missed,
-    offsets,
     ray,
     trace,
     translation,

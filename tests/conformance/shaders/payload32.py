@@ -5,9 +5,10 @@ trace, 4 the closest hit's own words after it, 5 any hit, 6 miss), word 1 the de
 """
 
 import optixc as ox
-from optixc import Array, Array2, Traversable, float3, uint32
+from optixc import Array, Array2, FixedArray, Traversable, float3, uint32
 
 WORDS = 32
+Block = FixedArray[uint32, 32]
 
 
 @ox.struct
@@ -22,7 +23,7 @@ class Params:
 
 @ox.payload
 class Words:
-    w: ox.FixedArray[uint32, 32]
+    w: Block
 
 
 params = ox.launch_params(Params)
@@ -40,7 +41,7 @@ def put(tag: uint32, depth: uint32, words: Words):
 
 @ox.program
 def __raygen__words():
-    words = Words()
+    words = Words(Block())
     for i in range(WORDS):
         words.w[i] = 1000 + i
     words.w[0] = 0
@@ -54,7 +55,7 @@ def __closesthit__words(words: Words):
     depth = words.w[0]
     put(2, depth, words)
     if depth + 1 < params.depth:
-        inner = Words()
+        inner = Words(Block())
         for i in range(WORDS):
             inner.w[i] = words.w[i] + 10000
         inner.w[0] = depth + 1
