@@ -64,7 +64,7 @@ typedef struct OxrtContextOptions {
     unsigned logCallbackLevel;   /* 0 to 4 */
     unsigned validation;         /* 0 or 1 */
     unsigned threads;            /* bounds launches and builds; 0: as many as the process may use */
-    const char* embreePath;      /* libembree4 to load; NULL: OXRT_EMBREE, else the one already loaded, else the system's */
+    const char* embreePath;      /* libembree4 to load; NULL: OXRT_EMBREE, else the system's. One that the process has loaded already wins */
 } OxrtContextOptions;
 
 OXRT_API OxrtResult oxrtContextCreate(const OxrtContextOptions* options, OxrtContext* context);
@@ -142,7 +142,8 @@ typedef struct OxrtAccelInfo {
 /* Builds at once; on failure nothing is made. An IAS keeps its children alive. */
 OXRT_API OxrtResult oxrtAccelBuild(OxrtContext context, const OxrtAccelBuildOptions* options, const OxrtBuildInput* inputs,
                                    unsigned numInputs, OxrtAccel* accel);
-/* Same inputs with other coordinates, needs ALLOW_UPDATE; handle stays. */
+/* Same inputs with other coordinates, needs ALLOW_UPDATE; handle stays. An error while a launch of the context runs. An IAS over an updated
+   accel must be updated as well. */
 OXRT_API OxrtResult oxrtAccelUpdate(OxrtAccel accel, const OxrtBuildInput* inputs, unsigned numInputs);
 OXRT_API OxrtResult oxrtAccelGetInfo(OxrtAccel accel, OxrtAccelInfo* info);
 /* The handle is stale from here on; memory goes when no IAS and no launch uses it. */
@@ -225,13 +226,14 @@ typedef struct OxrtLaunchReport {
     char message[512];
 } OxrtLaunchReport;
 
-/* Runs width x height x depth launch indices and returns when all are done. `params` is copied (paramsSize bytes). */
+/* Runs width x height x depth launch indices, on the calling thread too, and returns when all are done. `params` is copied (paramsSize bytes). */
 OXRT_API OxrtResult oxrtLaunch(OxrtPipeline pipeline, const void* params, size_t paramsSize, const OxrtShaderBindingTable* sbt,
                                uint32_t width, uint32_t height, uint32_t depth);
 /* The same in steps, for a caller that must stay responsive: begin, then wait until *done is 1. A begun launch must be waited for. */
 OXRT_API OxrtResult oxrtLaunchBegin(OxrtPipeline pipeline, const void* params, size_t paramsSize, const OxrtShaderBindingTable* sbt,
                                     uint32_t width, uint32_t height, uint32_t depth);
-/* The calling thread works too, for about timeoutMs; the result is the launch's once *done is 1. */
+/* Waits at most timeoutMs; the result is the launch's once *done is 1. The calling thread runs no programs here, so that it returns in time
+   even if one of them never ends; a worker takes its place while it sleeps. */
 OXRT_API OxrtResult oxrtLaunchWait(OxrtPipeline pipeline, unsigned timeoutMs, int* done);
 OXRT_API OxrtResult oxrtLaunchCancel(OxrtPipeline pipeline);
 /* About the last launch of the pipeline that failed. */

@@ -38,7 +38,9 @@ enum { OXRT_PRIMITIVE_CUSTOM = 0x2500, OXRT_PRIMITIVE_QUADRATIC_BSPLINE = 0x2501
        OXRT_PRIMITIVE_LINEAR = 0x2503, OXRT_PRIMITIVE_CATMULL_ROM = 0x2504, OXRT_PRIMITIVE_FLAT_QUADRATIC_BSPLINE = 0x2505,
        OXRT_PRIMITIVE_SPHERE = 0x2506, OXRT_PRIMITIVE_CUBIC_BEZIER = 0x2507, OXRT_PRIMITIVE_TRIANGLE = 0x2531 };
 
-/* One build input of a GAS; Embree's geomID is its index. Arrays belong to the accel and are 16-byte padded at the end. */
+/* One build input of a GAS; Embree's geomID is its index, and the geometry's user pointer (geometryUserPtr in callbacks) leads here. Arrays
+   belong to the accel and are 16-byte padded at the end. Embree calls an argument filter for geometries of which some record allows any
+   hit; for the others (ENFORCE_ANYHIT, face culling) the query needs RTC_RAY_QUERY_FLAG_INVOKE_ARGUMENT_FILTER. */
 typedef struct OxrtGeometry {
     uint32_t primitiveType;
     uint32_t primitiveCount;

@@ -1,0 +1,278 @@
+// See accel.h.
+#include "accel.h"
+
+#include "objects.h"
+
+#include <algorithm>
+#include <chrono>
+#include <limits>
+
+namespace oxrt {
+
+namespace {
+
+constexpr std::uint32_t knownBuildFlags = OXRT_BUILD_FLAG_ALLOW_UPDATE | OXRT_BUILD_FLAG_ALLOW_COMPACTION | OXRT_BUILD_FLAG_PREFER_FAST_TRACE |
+                                          OXRT_BUILD_FLAG_PREFER_FAST_BUILD | OXRT_BUILD_FLAG_ALLOW_RANDOM_VERTEX_ACCESS |
+                                          OXRT_BUILD_FLAG_ALLOW_RANDOM_INSTANCE_ACCESS | OXRT_BUILD_FLAG_NOT_ROBUST;
+constexpr std::uint64_t maxPrimitivesPerGas = std::uint64_t(1) << 29;
+constexpr std::uint64_t maxRecordsPerGas = std::uint64_t(1) << 24;
+
+void checkOptions(const OxrtAccelBuildOptions& options)
+{
+    if (options.buildFlags & ~knownBuildFlags)
+        fail(OXRT_ERROR_INVALID_VALUE, "buildFlags 0x%x has unknown bits 0x%x; combine BuildFlags", options.buildFlags,
+             options.buildFlags & ~knownBuildFlags);
+    constexpr std::uint32_t both = OXRT_BUILD_FLAG_PREFER_FAST_TRACE | OXRT_BUILD_FLAG_PREFER_FAST_BUILD;
+    if ((options.buildFlags & both) == both)
+        fail(OXRT_ERROR_INVALID_VALUE, "buildFlags holds PREFER_FAST_TRACE and PREFER_FAST_BUILD; choose one");
+    if (options.motion.numKeys > 1)
+        fail(OXRT_ERROR_NOT_SUPPORTED, "motion.numKeys is %u; this version builds static scenes only, give 0 or 1", options.motion.numKeys);
+}
+
+void checkInputs(std::span<const OxrtBuildInput> inputs)
+{
+    if (inputs.empty()) fail(OXRT_ERROR_INVALID_VALUE, "the list of build inputs is empty; give at least one");
+    if (!inputs.data()) fail(OXRT_ERROR_INVALID_VALUE, "the build inputs are NULL but there are %zu", inputs.size());
+    std::uint64_t primitives = 0;
+    std::uint64_t records = 0;
+    for (unsigned i = 0; i < inputs.size(); ++i) {
+        if (inputs[i].type != inputs[0].type)
+            fail(OXRT_ERROR_INVALID_VALUE, "input %u is of type 0x%x but input 0 of type 0x%x; make one accel per type and instance them", i,
+                 inputs[i].type, inputs[0].type);
+        if (inputs[i].type == OXRT_BUILD_INPUT_INSTANCES) continue;
+        Geometry::check(inputs[i], i);
+        primitives += inputs[i].numPrimitives;
+        records += inputs[i].numSbtRecords;
+    }
+    if (primitives > maxPrimitivesPerGas)
+        fail(OXRT_ERROR_INVALID_VALUE, "the inputs hold %llu primitives; a GAS holds at most 2^29", static_cast<unsigned long long>(primitives));
+    if (records > maxRecordsPerGas)
+        fail(OXRT_ERROR_INVALID_VALUE, "the inputs need %llu SBT records; a GAS has at most 2^24", static_cast<unsigned long long>(records));
+    if (inputs[0].type == OXRT_BUILD_INPUT_INSTANCES && inputs.size() != 1)
+        fail(OXRT_ERROR_INVALID_VALUE, "%zu inputs of instances; an IAS has exactly one, put all instances into it", inputs.size());
+}
+
+std::span<const OxrtInstance> instancesOf(const OxrtBuildInput& input)
+{
+    if (!input.instances && input.numPrimitives != 0)
+        fail(OXRT_ERROR_INVALID_VALUE, "input 0: instances is NULL but numPrimitives is %llu", static_cast<unsigned long long>(input.numPrimitives));
+    return {input.instances, input.numPrimitives};
+}
+
+} // namespace
+
+std::shared_ptr<Accel> Accel::make(std::shared_ptr<Context> context, const OxrtAccelBuildOptions& options,
+                                   std::span<const OxrtBuildInput> inputs)
+{
+    checkOptions(options);
+    checkInputs(inputs);
+    auto accel = std::make_shared<Accel>(context, options.buildFlags);
+    accel->build(inputs);
+    context->addAccel(accel->handle(), accel);
+    return accel;
+}
+
+Accel::Accel(std::shared_ptr<Context> owner, std::uint32_t flags) : context(std::move(owner)), buildFlags(flags) {}
+
+Accel::~Accel()
+{
+    invalidate();
+    if (scene) context->embree.rtcReleaseScene(scene);
+}
+
+void Accel::invalidate()
+{
+    context->removeAccel(view.handle);
+    context->traversables.remove(view.handle);
+    if (instances) instances->removeHandles(*context);
+}
+
+void Accel::build(std::span<const OxrtBuildInput> inputs)
+{
+    const auto begin = std::chrono::steady_clock::now();
+    view.keyCount = 1;
+    if (inputs[0].type == OXRT_BUILD_INPUT_INSTANCES)
+        instances = std::make_unique<Instances>(*context, instancesOf(inputs[0]));
+    else
+        buildGeometries(inputs);
+
+    const std::lock_guard lock(context->buildMutex);
+    const std::int64_t bytesBefore = context->embreeBytes;
+    setUpScene();
+    commit();
+    embreeBytes = context->embreeBytes - bytesBefore;
+
+    if (instances) instances->addHandles(*context);
+    view.handle = context->traversables.add(&view);
+    const std::chrono::duration<double, std::milli> elapsed = std::chrono::steady_clock::now() - begin;
+    const OxrtAccelInfo made = info();
+    context->log(4, "ACCEL",
+                 formatText("%s of %llu %s built in %.2f ms, %.2f MiB", made.isGas ? "GAS" : "IAS",
+                            static_cast<unsigned long long>(made.primitiveCount), made.isGas ? "primitives" : "instances", elapsed.count(),
+                            static_cast<double>(made.memoryUsage) / (1 << 20)));
+    if (instances && instances->singularCount() != 0)
+        context->log(3, "ACCEL", formatText("%zu instances have a singular transform and are never hit", instances->singularCount()));
+}
+
+void Accel::buildGeometries(std::span<const OxrtBuildInput> inputs)
+{
+    std::uint32_t recordBase = 0;
+    for (const OxrtBuildInput& input : inputs) {
+        geometries.push_back(std::make_unique<Geometry>(input, recordBase));
+        recordBase += input.numSbtRecords;
+    }
+    geometryViews.resize(geometries.size()); // never again: Embree keeps pointers to them
+}
+
+void Accel::setUpScene()
+{
+    const EmbreeLibrary& embree = context->embree;
+    scene = embree.rtcNewScene(context->device);
+    if (!scene) context->checkEmbree("making a scene");
+    unsigned flags = RTC_SCENE_FLAG_FILTER_FUNCTION_IN_ARGUMENTS;
+    if (!(buildFlags & OXRT_BUILD_FLAG_NOT_ROBUST)) flags |= RTC_SCENE_FLAG_ROBUST;
+    RTCBuildQuality quality = RTC_BUILD_QUALITY_MEDIUM;
+    if (buildFlags & OXRT_BUILD_FLAG_PREFER_FAST_TRACE) quality = RTC_BUILD_QUALITY_HIGH;
+    if (buildFlags & OXRT_BUILD_FLAG_PREFER_FAST_BUILD) quality = RTC_BUILD_QUALITY_LOW;
+    if (updatable()) { // the only combination in which Embree refits instead of building again
+        flags |= RTC_SCENE_FLAG_DYNAMIC;
+        quality = RTC_BUILD_QUALITY_LOW;
+    }
+    embree.rtcSetSceneFlags(scene, static_cast<RTCSceneFlags>(flags));
+    embree.rtcSetSceneBuildQuality(scene, quality);
+
+    if (instances) instances->attach(embree, context->device, scene, updatable());
+    for (unsigned i = 0; i < geometries.size(); ++i)
+        geometries[i]->attach(embree, context->device, scene, i, geometryViews[i], updatable());
+}
+
+void Accel::commit()
+{
+    const EmbreeLibrary& embree = context->embree;
+    embree.rtcCommitScene(scene);
+    context->checkEmbree("building the accel");
+    embree.rtcGetSceneBounds(scene, &bounds);
+
+    view.scene = scene;
+    view.needs = instances ? instances->needs() : 0;
+    for (const auto& geometry : geometries) view.needs |= geometry->needs();
+    view.type = instances ? OXRT_TRAVERSABLE_IAS : OXRT_TRAVERSABLE_GAS;
+    view.geometries = geometryViews.data();
+    view.geometryCount = static_cast<std::uint32_t>(geometryViews.size());
+    view.instances = instances ? instances->data() : nullptr;
+    view.instanceCount = instances ? instances->size() : 0;
+}
+
+void Accel::checkSameShape(std::span<const OxrtBuildInput> inputs) const
+{
+    if (instances) {
+        if (inputs[0].type != OXRT_BUILD_INPUT_INSTANCES || inputs[0].numPrimitives != instances->size())
+            fail(OXRT_ERROR_INVALID_VALUE, "an update keeps the shape of the build, which had %u instances", instances->size());
+        return;
+    }
+    if (inputs.size() != geometries.size())
+        fail(OXRT_ERROR_INVALID_VALUE, "an update keeps the shape of the build, which had %zu inputs, not %zu", geometries.size(), inputs.size());
+    for (unsigned i = 0; i < inputs.size(); ++i) {
+        const OxrtBuildInput& input = inputs[i];
+        const OxrtGeometry& built = geometries[i]->geometry();
+        const std::uint64_t vertexCount = input.numPrimitives == 0                            ? 0
+                                          : input.type == OXRT_BUILD_INPUT_CUSTOM_PRIMITIVES ? input.numPrimitives
+                                                                                             : input.numVertices;
+        if (input.type != geometries[i]->buildInputType() || input.numPrimitives != built.primitiveCount || vertexCount != built.vertexCount ||
+            input.numSbtRecords != built.recordCount || std::max(1u, input.numKeys) != built.keyCount ||
+            input.primitiveIndexOffset != built.primitiveIndexOffset)
+            fail(OXRT_ERROR_INVALID_VALUE,
+                 "input %u: an update keeps type, primitive, vertex, record and key counts of the build (%u primitives, %llu vertices, %u records)",
+                 i, built.primitiveCount, static_cast<unsigned long long>(built.vertexCount), built.recordCount);
+    }
+}
+
+void Accel::update(std::span<const OxrtBuildInput> inputs)
+{
+    if (!updatable())
+        fail(OXRT_ERROR_INVALID_VALUE, "the accel was built without ALLOW_UPDATE; build it with that flag to update it");
+    checkInputs(inputs);
+    checkSameShape(inputs);
+
+    context->beginChange("updating an accel");
+    const struct EndChange {
+        Context& context;
+        ~EndChange() { context.endChange(); }
+    } end{*context};
+    const std::lock_guard lock(context->buildMutex);
+    const std::int64_t bytesBefore = context->embreeBytes;
+    if (instances) {
+        instances->update(instancesOf(inputs[0]));
+        instances->refit(context->embree, scene);
+    }
+    for (unsigned i = 0; i < geometries.size(); ++i) {
+        geometries[i]->update(inputs[i]);
+        geometries[i]->refit(context->embree, scene, i);
+    }
+    commit();
+    embreeBytes += context->embreeBytes - bytesBefore;
+}
+
+OxrtAccelInfo Accel::info() const
+{
+    constexpr float infinity = std::numeric_limits<float>::infinity();
+    OxrtAccelInfo result = {};
+    result.handle = view.handle;
+    const bool empty = !(bounds.lower_x <= bounds.upper_x);
+    const float box[6] = {bounds.lower_x, bounds.lower_y, bounds.lower_z, bounds.upper_x, bounds.upper_y, bounds.upper_z};
+    for (int i = 0; i < 6; ++i) result.aabb[i] = empty ? (i < 3 ? infinity : -infinity) : box[i];
+    result.isGas = view.type == OXRT_TRAVERSABLE_GAS;
+    result.needs = view.needs;
+    result.memoryUsage = static_cast<std::uint64_t>(std::max<std::int64_t>(embreeBytes, 0)) + sizeof *this;
+    result.primitiveCount = instances ? instances->size() : 0;
+    if (instances) result.memoryUsage += instances->bytes();
+    for (const auto& geometry : geometries) {
+        result.primitiveCount += geometry->geometry().primitiveCount;
+        result.memoryUsage += geometry->bytes() + sizeof(Geometry) + sizeof(OxrtGeometry);
+    }
+    return result;
+}
+
+} // namespace oxrt
+
+using namespace oxrt;
+
+OxrtResult oxrtAccelBuild(OxrtContext context, const OxrtAccelBuildOptions* options, const OxrtBuildInput* inputs, unsigned numInputs,
+                          OxrtAccel* accel)
+{
+    return guard([&] {
+        const auto owner = find(context);
+        owner->attempt("ACCEL", [&] {
+            if (!accel) fail(OXRT_ERROR_INVALID_VALUE, "the result pointer `accel` is NULL");
+            *accel = nullptr;
+            *accel = publish(Accel::make(owner, options ? *options : OxrtAccelBuildOptions{}, {inputs, numInputs}));
+        });
+    });
+}
+
+OxrtResult oxrtAccelUpdate(OxrtAccel accel, const OxrtBuildInput* inputs, unsigned numInputs)
+{
+    return guard([&] {
+        const auto self = find(accel);
+        self->context->attempt("ACCEL", [&] { self->update({inputs, numInputs}); });
+    });
+}
+
+OxrtResult oxrtAccelGetInfo(OxrtAccel accel, OxrtAccelInfo* info)
+{
+    return guard([&] {
+        const auto self = find(accel);
+        if (!info) fail(OXRT_ERROR_INVALID_VALUE, "the result pointer `info` is NULL");
+        *info = self->info();
+    });
+}
+
+OxrtResult oxrtAccelDestroy(OxrtAccel accel)
+{
+    return guard([&] {
+        std::shared_ptr<Accel> self = withdraw(accel);
+        self->invalidate();
+        const std::shared_ptr<Context> context = self->context;
+        context->retire(std::move(self));
+    });
+}

@@ -1,0 +1,57 @@
+// An acceleration structure: copies of the build inputs, the Embree scene over them, and the view of both that kernels read.
+#pragma once
+
+#include "context.h"
+#include "geometry.h"
+#include "instance.h"
+#include "oxrt/embree.h"
+#include "oxrt/oxrt.h"
+#include "oxrt/pipeline.h"
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+namespace oxrt {
+
+class Accel {
+public:
+    // Throws Failure and leaves nothing behind.
+    static std::shared_ptr<Accel> make(std::shared_ptr<Context> context, const OxrtAccelBuildOptions& options,
+                                       std::span<const OxrtBuildInput> inputs);
+    // Use make(): this only prepares.
+    Accel(std::shared_ptr<Context> owner, std::uint32_t flags);
+    ~Accel();
+    Accel(const Accel&) = delete;
+    Accel& operator=(const Accel&) = delete;
+
+    void update(std::span<const OxrtBuildInput> inputs);
+    // Makes the handles stale; may be called again.
+    void invalidate();
+
+    OxrtAccelInfo info() const;
+    const OxrtTraversableView& traversable() const { return view; }
+    std::uint64_t handle() const { return view.handle; }
+
+    const std::shared_ptr<Context> context;
+
+private:
+    void build(std::span<const OxrtBuildInput> inputs);
+    void buildGeometries(std::span<const OxrtBuildInput> inputs);
+    void checkSameShape(std::span<const OxrtBuildInput> inputs) const;
+    void setUpScene();
+    void commit();
+    bool updatable() const { return (buildFlags & OXRT_BUILD_FLAG_ALLOW_UPDATE) != 0; }
+
+    const std::uint32_t buildFlags;
+    std::vector<std::unique_ptr<Geometry>> geometries;
+    std::vector<OxrtGeometry> geometryViews;
+    std::unique_ptr<Instances> instances;
+    RTCScene scene = nullptr;
+    OxrtTraversableView view = {};
+    RTCBounds bounds = {};
+    std::int64_t embreeBytes = 0;
+};
+
+} // namespace oxrt

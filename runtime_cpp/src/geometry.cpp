@@ -1,0 +1,250 @@
+// See geometry.h.
+#include "geometry.h"
+
+#include "error.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace oxrt {
+
+namespace {
+
+constexpr std::uint64_t maxPrimitives = std::uint64_t(1) << 29;
+constexpr std::uint32_t maxRecords = 1u << 24;
+constexpr std::uint32_t knownGeometryFlags = 7;
+constexpr std::uint32_t flagDisableAnyHit = 1;
+// Embree drops primitives that reach further.
+constexpr float farthest = 1.8e18f;
+
+void checkRecords(const OxrtBuildInput& input, unsigned number)
+{
+    if (input.numSbtRecords == 0 || input.numSbtRecords > maxRecords)
+        fail(OXRT_ERROR_INVALID_VALUE, "input %u: numSbtRecords is %u; give 1 to %u", number, input.numSbtRecords, maxRecords);
+    for (std::uint32_t i = 0; input.flags && i < input.numSbtRecords; ++i)
+        if (input.flags[i] & ~knownGeometryFlags)
+            fail(OXRT_ERROR_INVALID_VALUE, "input %u: flags[%u] is 0x%x, which has unknown bits; combine GeometryFlags", number, i, input.flags[i]);
+    if (input.numSbtRecords > 1 && !input.sbtIndexOffsets && input.numPrimitives != 0)
+        fail(OXRT_ERROR_INVALID_VALUE, "input %u: numSbtRecords is %u but sbtIndexOffsets is NULL; give one offset per primitive", number,
+             input.numSbtRecords);
+}
+
+void checkCounts(const OxrtBuildInput& input, unsigned number)
+{
+    if (input.numPrimitives > maxPrimitives)
+        fail(OXRT_ERROR_INVALID_VALUE, "input %u: %llu primitives; a GAS holds at most 2^29", number,
+             static_cast<unsigned long long>(input.numPrimitives));
+    if (input.primitiveIndexOffset + input.numPrimitives > std::uint64_t(1) << 32)
+        fail(OXRT_ERROR_INVALID_VALUE, "input %u: primitiveIndexOffset %u plus %llu primitives does not fit 32 bits", number,
+             input.primitiveIndexOffset, static_cast<unsigned long long>(input.numPrimitives));
+    if (input.numKeys > 1)
+        fail(OXRT_ERROR_NOT_SUPPORTED, "input %u: %u motion keys; this version builds static geometry only, give 1", number, input.numKeys);
+}
+
+// One array per motion key.
+void checkKeys(const float* const* keys, const OxrtBuildInput& input, unsigned number, const char* name)
+{
+    if (!keys) fail(OXRT_ERROR_INVALID_VALUE, "input %u: %s is NULL but numPrimitives is %llu", number, name,
+                    static_cast<unsigned long long>(input.numPrimitives));
+    for (std::uint32_t key = 0; key < std::max(1u, input.numKeys); ++key)
+        if (!keys[key]) fail(OXRT_ERROR_INVALID_VALUE, "input %u: %s[%u] is NULL", number, name, key);
+}
+
+void checkTriangles(const OxrtBuildInput& input, unsigned number)
+{
+    const auto triangles = static_cast<unsigned long long>(input.numPrimitives);
+    const auto available = static_cast<unsigned long long>(input.numVertices);
+    if (input.preTransform)
+        for (int i = 0; i < 12; ++i)
+            if (!std::isfinite(input.preTransform[i]))
+                fail(OXRT_ERROR_INVALID_VALUE, "input %u: preTransform[%d][%d] is not finite", number, i / 4, i % 4);
+    if (input.numPrimitives == 0) return;
+    if (input.numVertices == 0 || input.numVertices > std::uint64_t(1) << 32)
+        fail(OXRT_ERROR_INVALID_VALUE, "input %u: numVertices is %llu; give 1 to 2^32", number, available);
+    checkKeys(input.vertices, input, number, "vertices");
+    if (!input.indices && input.numPrimitives * 3 > input.numVertices)
+        fail(OXRT_ERROR_INVALID_VALUE, "input %u: %llu triangles without indices need %llu vertices, but there are %llu", number, triangles,
+             triangles * 3, available);
+    for (std::uint64_t i = 0; input.indices && i < input.numPrimitives * 3; ++i)
+        if (input.indices[i] >= input.numVertices)
+            fail(OXRT_ERROR_INVALID_VALUE, "input %u: index %u of triangle %llu is %lld, but there are %llu vertices", number,
+                 static_cast<unsigned>(i % 3), static_cast<unsigned long long>(i / 3),
+                 static_cast<long long>(static_cast<std::int32_t>(input.indices[i]) < 0 ? static_cast<std::int32_t>(input.indices[i])
+                                                                                     : input.indices[i]),
+                 available);
+}
+
+void transformPoints(const float* matrix, float* points, std::uint64_t count)
+{
+    for (std::uint64_t i = 0; i < count; ++i) {
+        float* p = points + 3 * i;
+        const float x = p[0];
+        const float y = p[1];
+        const float z = p[2];
+        for (int row = 0; row < 3; ++row) p[row] = matrix[4 * row] * x + matrix[4 * row + 1] * y + matrix[4 * row + 2] * z + matrix[4 * row + 3];
+    }
+}
+
+// As OptiX does it: boxes that are inverted, NaN or a single point are never visited, infinite ones always.
+void boxBounds(const RTCBoundsFunctionArguments* arguments)
+{
+    constexpr float infinity = std::numeric_limits<float>::infinity();
+    const auto& geometry = *static_cast<const OxrtGeometry*>(arguments->geometryUserPtr);
+    const float* box = geometry.vertices + 6 * (geometry.vertexCount * arguments->timeStep + arguments->primID);
+    const bool ordered = box[0] <= box[3] && box[1] <= box[4] && box[2] <= box[5];
+    const bool extended = box[0] < box[3] || box[1] < box[4] || box[2] < box[5];
+    RTCBounds& bounds = *arguments->bounds_o;
+    if (!ordered || !extended) {
+        bounds = {infinity, infinity, infinity, 0, -infinity, -infinity, -infinity, 0};
+        return;
+    }
+    const auto limit = [](float value) { return std::clamp(value, -farthest, farthest); };
+    bounds = {limit(box[0]), limit(box[1]), limit(box[2]), 0, limit(box[3]), limit(box[4]), limit(box[5]), 0};
+}
+
+// Runs where a pipeline without intersection programs meets custom primitives: nothing is hit.
+void intersectNothing(const RTCIntersectFunctionNArguments*) {}
+void occludeNothing(const RTCOccludedFunctionNArguments*) {}
+
+} // namespace
+
+void Geometry::check(const OxrtBuildInput& input, unsigned number)
+{
+    switch (input.type) {
+    case OXRT_BUILD_INPUT_TRIANGLES:
+        checkCounts(input, number);
+        checkRecords(input, number);
+        checkTriangles(input, number);
+        break;
+    case OXRT_BUILD_INPUT_CUSTOM_PRIMITIVES:
+        checkCounts(input, number);
+        checkRecords(input, number);
+        if (input.numPrimitives != 0) checkKeys(input.aabbs, input, number, "aabbs");
+        break;
+    default:
+        fail(OXRT_ERROR_INVALID_VALUE, "input %u: type is 0x%x, which is no geometry; give OXRT_BUILD_INPUT_TRIANGLES or _CUSTOM_PRIMITIVES",
+             number, input.type);
+    }
+}
+
+Geometry::Geometry(const OxrtBuildInput& input, std::uint32_t recordBase) : inputType(input.type)
+{
+    view.primitiveCount = static_cast<std::uint32_t>(input.numPrimitives);
+    view.primitiveIndexOffset = input.primitiveIndexOffset;
+    view.recordBase = recordBase;
+    view.recordCount = input.numSbtRecords;
+    view.keyCount = std::max(1u, input.numKeys);
+    recordFlags = Array<std::uint32_t>(input.numSbtRecords);
+    if (input.sbtIndexOffsets && input.numSbtRecords > 1) recordOffsets = Array<std::uint32_t>(view.primitiveCount);
+
+    if (inputType == OXRT_BUILD_INPUT_TRIANGLES) {
+        view.primitiveType = OXRT_PRIMITIVE_TRIANGLE;
+        view.vertexCount = input.numPrimitives == 0 ? 0 : input.numVertices;
+        vertices = Array<float>(3 * view.vertexCount * view.keyCount);
+        indices = Array<std::uint32_t>(3 * std::size_t(view.primitiveCount));
+    } else {
+        view.primitiveType = OXRT_PRIMITIVE_CUSTOM;
+        view.vertexCount = view.primitiveCount;
+        vertices = Array<float>(6 * view.vertexCount * view.keyCount);
+    }
+    view.recordFlags = recordFlags.data();
+    view.recordOffsets = recordOffsets.data();
+    view.vertices = vertices.data();
+    view.indices = indices.data();
+    update(input);
+}
+
+void Geometry::update(const OxrtBuildInput& input)
+{
+    copyRecords(input);
+    if (view.primitiveCount == 0) return;
+    if (inputType == OXRT_BUILD_INPUT_TRIANGLES)
+        copyTriangles(input);
+    else
+        copyBoxes(input);
+}
+
+void Geometry::copyRecords(const OxrtBuildInput& input)
+{
+    for (std::uint32_t i = 0; i < view.recordCount; ++i) recordFlags[i] = input.flags ? input.flags[i] : 0;
+    for (std::size_t i = 0; i < recordOffsets.size(); ++i) recordOffsets[i] = std::min(input.sbtIndexOffsets[i], view.recordCount - 1);
+}
+
+void Geometry::copyTriangles(const OxrtBuildInput& input)
+{
+    const std::size_t floats = 3 * view.vertexCount;
+    for (std::uint32_t key = 0; key < view.keyCount; ++key) {
+        float* target = vertices.data() + floats * key;
+        std::copy_n(input.vertices[key], floats, target);
+        if (input.preTransform) transformPoints(input.preTransform, target, view.vertexCount);
+    }
+    if (input.indices)
+        std::copy_n(input.indices, indices.size(), indices.data());
+    else
+        for (std::size_t i = 0; i < indices.size(); ++i) indices[i] = static_cast<std::uint32_t>(i);
+}
+
+void Geometry::copyBoxes(const OxrtBuildInput& input)
+{
+    const std::size_t floats = 6 * view.vertexCount;
+    for (std::uint32_t key = 0; key < view.keyCount; ++key) std::copy_n(input.aabbs[key], floats, vertices.data() + floats * key);
+}
+
+bool Geometry::anyHitPossible() const
+{
+    return std::any_of(recordFlags.data(), recordFlags.data() + view.recordCount,
+                       [](std::uint32_t flags) { return (flags & flagDisableAnyHit) == 0; });
+}
+
+std::uint32_t Geometry::needs() const
+{
+    std::uint32_t result = view.primitiveType == OXRT_PRIMITIVE_CUSTOM ? OXRT_SCENE_HAS_CUSTOM : 0;
+    for (std::uint32_t i = 0; i < view.recordCount; ++i)
+        if (recordFlags[i] != 0) result |= OXRT_SCENE_HAS_GEOMETRY_FLAGS;
+    return result;
+}
+
+std::size_t Geometry::bytes() const
+{
+    return recordFlags.bytes() + recordOffsets.bytes() + vertices.bytes() + indices.bytes();
+}
+
+void Geometry::attach(const EmbreeLibrary& embree, RTCDevice device, RTCScene scene, unsigned geomID, OxrtGeometry& target,
+                      bool updatable) const
+{
+    target = view;
+    if (view.primitiveCount == 0) return; // the number stays reserved
+    const bool custom = view.primitiveType == OXRT_PRIMITIVE_CUSTOM;
+    const RTCGeometry geometry = embree.rtcNewGeometry(device, custom ? RTC_GEOMETRY_TYPE_USER : RTC_GEOMETRY_TYPE_TRIANGLE);
+    embree.rtcSetGeometryUserData(geometry, &target);
+    embree.rtcSetGeometryMask(geometry, ~0u); // Embree's default is 1
+    embree.rtcSetGeometryBuildQuality(geometry, updatable ? RTC_BUILD_QUALITY_REFIT : RTC_BUILD_QUALITY_MEDIUM);
+    embree.rtcSetGeometryEnableFilterFunctionFromArguments(geometry, anyHitPossible());
+    if (custom) {
+        embree.rtcSetGeometryUserPrimitiveCount(geometry, view.primitiveCount);
+        embree.rtcSetGeometryBoundsFunction(geometry, boxBounds, &target);
+        embree.rtcSetGeometryIntersectFunction(geometry, intersectNothing);
+        embree.rtcSetGeometryOccludedFunction(geometry, occludeNothing);
+    } else {
+        embree.rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, vertices.data(), 0, 12, view.vertexCount);
+        embree.rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, indices.data(), 0, 12, view.primitiveCount);
+    }
+    embree.rtcCommitGeometry(geometry);
+    embree.rtcAttachGeometryByID(scene, geometry, geomID);
+    embree.rtcReleaseGeometry(geometry);
+}
+
+void Geometry::refit(const EmbreeLibrary& embree, RTCScene scene, unsigned geomID) const
+{
+    if (view.primitiveCount == 0) return;
+    const RTCGeometry geometry = embree.rtcGetGeometry(scene, geomID);
+    embree.rtcSetGeometryEnableFilterFunctionFromArguments(geometry, anyHitPossible());
+    if (view.primitiveType == OXRT_PRIMITIVE_TRIANGLE) {
+        embree.rtcUpdateGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0);
+        embree.rtcUpdateGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0);
+    }
+    embree.rtcCommitGeometry(geometry);
+}
+
+} // namespace oxrt

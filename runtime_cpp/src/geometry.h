@@ -1,0 +1,47 @@
+// One build input of a geometry acceleration structure: checked, copied, and given to Embree as the geometry with the input's number.
+#pragma once
+
+#include "array.h"
+#include "embree_library.h"
+#include "oxrt/oxrt.h"
+#include "oxrt/pipeline.h"
+
+#include <cstdint>
+
+namespace oxrt {
+
+class Geometry {
+public:
+    // Throws Failure for input that cannot be built; `number` is the input's place in the caller's list.
+    static void check(const OxrtBuildInput& input, unsigned number);
+
+    // `input` passed check().
+    Geometry(const OxrtBuildInput& input, std::uint32_t recordBase);
+
+    // `target` is what kernels see; it becomes the user pointer of the Embree geometry and must outlive it.
+    void attach(const EmbreeLibrary& embree, RTCDevice device, RTCScene scene, unsigned geomID, OxrtGeometry& target, bool updatable) const;
+
+    // Other coordinates, flags and offsets; the shape is that of the construction.
+    void update(const OxrtBuildInput& input);
+    void refit(const EmbreeLibrary& embree, RTCScene scene, unsigned geomID) const;
+
+    const OxrtGeometry& geometry() const { return view; }
+    std::uint32_t buildInputType() const { return inputType; }
+    std::uint32_t needs() const;
+    std::size_t bytes() const;
+
+private:
+    void copyRecords(const OxrtBuildInput& input);
+    void copyTriangles(const OxrtBuildInput& input);
+    void copyBoxes(const OxrtBuildInput& input);
+    bool anyHitPossible() const;
+
+    std::uint32_t inputType;
+    OxrtGeometry view = {};
+    Array<std::uint32_t> recordFlags;
+    Array<std::uint32_t> recordOffsets;
+    Array<float> vertices;
+    Array<std::uint32_t> indices;
+};
+
+} // namespace oxrt

@@ -1,0 +1,322 @@
+// See pipeline.h.
+#include "pipeline.h"
+
+#include "cpu.h"
+#include "error.h"
+#include "objects.h"
+
+#include <algorithm>
+#include <atomic>
+#include <cstring>
+#include <dlfcn.h>
+#include <unistd.h>
+
+namespace oxrt {
+
+namespace {
+
+constexpr std::uint64_t maxLaunchIndices = std::uint64_t(1) << 30;
+
+// 0 marks an empty record.
+std::uint32_t nextUid()
+{
+    static std::atomic<std::uint32_t> counter{0};
+    return ++counter;
+}
+
+} // namespace
+
+void Pipeline::CloseLibrary::operator()(void* handle) const
+{
+    dlclose(handle);
+}
+
+Pipeline::Pipeline(std::shared_ptr<Context> owner, const char* file) : context(std::move(owner)), path(file), uid(nextUid())
+{
+    // A name without a slash would make the loader search its own folders.
+    const std::string name = path.find('/') == std::string::npos ? "./" + path : path;
+    if (access(name.c_str(), R_OK) != 0)
+        fail(OXRT_ERROR_FILE_IO_ERROR, "cannot read the pipeline %s (%s); compile it first", file, std::strerror(errno));
+    library.reset(dlopen(name.c_str(), RTLD_NOW | RTLD_LOCAL));
+    if (!library) {
+        const char* reason = dlerror();
+        fail(OXRT_ERROR_INVALID_FILE_FORMAT, "cannot load the pipeline %s: %s", file, reason ? reason : "unknown reason");
+    }
+    binary = static_cast<const OxrtPipelineBinary*>(dlsym(library.get(), "oxrt_pipeline_v1"));
+    if (!binary) fail(OXRT_ERROR_ENTRY_SYMBOL_NOT_FOUND, "%s is not a compiled pipeline: it does not export oxrt_pipeline_v1", file);
+    chooseVariant(*binary);
+    launch = std::make_unique<Launch>(binary->paramsSize);
+}
+
+Pipeline::~Pipeline()
+{
+    finishLaunch();
+}
+
+void Pipeline::chooseVariant(const OxrtPipelineBinary& candidate)
+{
+    if (candidate.abi != OXRT_PIPELINE_ABI)
+        fail(OXRT_ERROR_UNSUPPORTED_ABI_VERSION, "the pipeline %s has interface version %u, this runtime has %u; compile it again",
+             path.c_str(), candidate.abi, static_cast<unsigned>(OXRT_PIPELINE_ABI));
+    const std::uint32_t isa = detectIsa();
+    for (std::uint32_t i = 0; candidate.variants && i < candidate.variantCount; ++i)
+        if (candidate.variants[i].isa <= isa) variant = &candidate.variants[i];
+    if (!variant)
+        fail(OXRT_ERROR_NOT_SUPPORTED, "the pipeline %s has no variant that this processor can run; compile it with --target native",
+             path.c_str());
+
+    for (std::uint32_t i = 0; i < variant->programCount; ++i) {
+        const OxrtProgram& program = variant->programs[i];
+        if (!program.name || (program.kind == OXRT_KIND_RAYGEN && !program.run))
+            fail(OXRT_ERROR_INVALID_FILE_FORMAT, "program %u of the pipeline %s is incomplete; compile it again", i, path.c_str());
+    }
+}
+
+OxrtPipelineInfo Pipeline::info() const
+{
+    return {variant->lanes, variant->isa, variant->programCount, binary->paramsSize, binary->maxTraceDepth, uid};
+}
+
+std::int32_t Pipeline::findProgram(const char* name) const
+{
+    for (std::uint32_t i = 0; i < variant->programCount; ++i)
+        if (std::strcmp(variant->programs[i].name, name) == 0) return static_cast<std::int32_t>(i);
+    return OXRT_NO_PROGRAM;
+}
+
+const OxrtProgram& Pipeline::checkLaunch(const void* params, std::size_t paramsSize, const OxrtShaderBindingTable* sbt, LaunchSize size) const
+{
+    // An absent variable ignores what is passed, as in OptiX.
+    if (binary->paramsSize != 0 && !params) fail(OXRT_ERROR_INVALID_VALUE, "params is NULL, but the pipeline has launch parameters");
+    if (binary->paramsSize != 0 && paramsSize != binary->paramsSize)
+        fail(OXRT_ERROR_INVALID_VALUE, "paramsSize is %zu, but the pipeline's launch parameters have %u bytes; pass the same struct", paramsSize,
+             binary->paramsSize);
+    if (!sbt) fail(OXRT_ERROR_INVALID_VALUE, "sbt is NULL");
+    if (size.width == 0 || size.height == 0 || size.depth == 0)
+        fail(OXRT_ERROR_INVALID_VALUE, "the launch size %u x %u x %u has a zero; use 1 for unused dimensions", size.width, size.height,
+             size.depth);
+    const std::uint64_t area = std::uint64_t(size.width) * size.height;
+    if (area > maxLaunchIndices || area * size.depth > maxLaunchIndices)
+        fail(OXRT_ERROR_LAUNCH_FAILURE, "the launch size %u x %u x %u exceeds 2^30 indices; launch in parts", size.width, size.height,
+             size.depth);
+    checkShaderBindingTable(*sbt, uid, context->validation);
+    return raygenOf(*sbt);
+}
+
+OxrtLaunch Pipeline::describeLaunch(const OxrtShaderBindingTable& sbt, LaunchSize size) const
+{
+    OxrtLaunch description = {};
+    description.width = size.width;
+    description.height = size.height;
+    description.depth = size.depth;
+    description.pipelineUid = uid;
+    description.raygenRecord = static_cast<const std::uint8_t*>(sbt.raygenRecord);
+    description.exceptionRecord = static_cast<const std::uint8_t*>(sbt.exceptionRecord);
+    description.missRecords = static_cast<const std::uint8_t*>(sbt.missRecords);
+    description.missStride = sbt.missStride;
+    description.missCount = sbt.missCount;
+    description.hitgroupRecords = static_cast<const std::uint8_t*>(sbt.hitgroupRecords);
+    description.hitgroupStride = sbt.hitgroupStride;
+    description.hitgroupCount = sbt.hitgroupCount;
+    description.callableRecords = static_cast<const std::uint8_t*>(sbt.callableRecords);
+    description.callableStride = sbt.callableStride;
+    description.callableCount = sbt.callableCount;
+    description.maxTraceDepth = binary->maxTraceDepth;
+    return description;
+}
+
+void Pipeline::prepareLaunch(const void* params, std::size_t paramsSize, const OxrtShaderBindingTable* sbt, LaunchSize size)
+{
+    const OxrtProgram& raygen = checkLaunch(params, paramsSize, sbt, size);
+    std::unique_lock lock(mutex);
+    idle.wait(lock, [this] { return !active; });
+    ticket = context->beginLaunch();
+    launch->prepare(*context, describeLaunch(*sbt, size), raygen, params);
+    active = true;
+    begun = false;
+}
+
+void Pipeline::beginLaunch(const void* params, std::size_t paramsSize, const OxrtShaderBindingTable* sbt, LaunchSize size)
+{
+    prepareLaunch(params, paramsSize, sbt, size);
+    context->pool.begin(*launch);
+    const std::lock_guard lock(mutex);
+    begun = true;
+}
+
+void Pipeline::runLaunch(const void* params, std::size_t paramsSize, const OxrtShaderBindingTable* sbt, LaunchSize size)
+{
+    prepareLaunch(params, paramsSize, sbt, size);
+    if (launch->partCount() == 1 || context->threads == 1) {
+        launch->run();
+    } else {
+        context->pool.begin(*launch);
+        context->pool.help(*launch);
+        context->pool.wait(*launch, std::chrono::nanoseconds(-1), false);
+    }
+    endLaunch();
+}
+
+bool Pipeline::waitLaunch(std::chrono::nanoseconds timeout)
+{
+    {
+        const std::lock_guard lock(mutex);
+        if (!begun) fail(OXRT_ERROR_INVALID_OPERATION, "no launch of this pipeline was begun; call oxrtLaunchBegin first");
+    }
+    if (!context->pool.wait(*launch, timeout, true)) return false;
+    endLaunch();
+    return true;
+}
+
+void Pipeline::finishLaunch() noexcept
+{
+    {
+        const std::lock_guard lock(mutex);
+        if (!begun) return;
+    }
+    context->pool.wait(*launch, std::chrono::nanoseconds(-1), true);
+    try {
+        endLaunch();
+    } catch (const std::exception&) {
+        // Nobody is left to be told.
+    }
+}
+
+void Pipeline::endLaunch()
+{
+    OxrtLaunchReport report;
+    bool cancelled;
+    {
+        const std::lock_guard lock(mutex);
+        if (!active) return; // another thread waited as well and was first
+        report = launch->report();
+        cancelled = launch->cancelled();
+        if (report.faultCode != OXRT_FAULT_NONE) failedReport = report;
+        context->endLaunch(ticket);
+        active = false;
+        begun = false;
+    }
+    idle.notify_one();
+    throwResult(report, cancelled);
+}
+
+void Pipeline::throwResult(const OxrtLaunchReport& report, bool cancelled) const
+{
+    if (report.faultCode != OXRT_FAULT_NONE) {
+        const std::string place = report.path[0] ? formatText("%s:%u: ", report.path, report.line) : std::string();
+        fail(context->validation ? OXRT_ERROR_VALIDATION_FAILURE : OXRT_ERROR_LAUNCH_FAILURE, "%slaunch index (%u, %u, %u): %s (code %d)",
+             place.c_str(), report.index[0], report.index[1], report.index[2], report.message, report.faultCode);
+    }
+    if (cancelled) fail(OXRT_ERROR_LAUNCH_CANCELLED, "the launch was cancelled");
+}
+
+void Pipeline::cancelLaunch()
+{
+    const std::lock_guard lock(mutex);
+    if (active) launch->cancel();
+}
+
+OxrtLaunchReport Pipeline::lastReport() const
+{
+    const std::lock_guard lock(mutex);
+    return failedReport;
+}
+
+void Pipeline::progress(std::uint64_t& done, std::uint64_t& total) const
+{
+    done = launch->indicesDone();
+    total = launch->indexCount();
+}
+
+} // namespace oxrt
+
+using namespace oxrt;
+
+OxrtResult oxrtPipelineLoad(OxrtContext context, const char* path, OxrtPipeline* pipeline)
+{
+    return guard([&] {
+        const auto owner = find(context);
+        owner->attempt("PIPELINE", [&] {
+            if (!pipeline) fail(OXRT_ERROR_INVALID_VALUE, "the result pointer `pipeline` is NULL");
+            *pipeline = nullptr;
+            if (!path) fail(OXRT_ERROR_INVALID_VALUE, "the path is NULL");
+            *pipeline = publish(std::make_shared<Pipeline>(owner, path));
+        });
+    });
+}
+
+OxrtResult oxrtPipelineDestroy(OxrtPipeline pipeline)
+{
+    return guard([&] { withdraw(pipeline)->finishLaunch(); });
+}
+
+OxrtResult oxrtPipelineGetInfo(OxrtPipeline pipeline, OxrtPipelineInfo* info)
+{
+    return guard([&] {
+        const auto self = find(pipeline);
+        if (!info) fail(OXRT_ERROR_INVALID_VALUE, "the result pointer `info` is NULL");
+        *info = self->info();
+    });
+}
+
+OxrtResult oxrtPipelineFindProgram(OxrtPipeline pipeline, const char* name, int32_t* program)
+{
+    return guard([&] {
+        const auto self = find(pipeline);
+        if (!name || !program) fail(OXRT_ERROR_INVALID_VALUE, "the %s is NULL", name ? "result pointer `program`" : "name");
+        *program = self->findProgram(name);
+    });
+}
+
+OxrtResult oxrtLaunch(OxrtPipeline pipeline, const void* params, size_t paramsSize, const OxrtShaderBindingTable* sbt, uint32_t width,
+                      uint32_t height, uint32_t depth)
+{
+    return guard([&] {
+        const auto self = find(pipeline);
+        self->context->attempt("LAUNCH", [&] { self->runLaunch(params, paramsSize, sbt, {width, height, depth}); });
+    });
+}
+
+OxrtResult oxrtLaunchBegin(OxrtPipeline pipeline, const void* params, size_t paramsSize, const OxrtShaderBindingTable* sbt, uint32_t width,
+                           uint32_t height, uint32_t depth)
+{
+    return guard([&] {
+        const auto self = find(pipeline);
+        self->context->attempt("LAUNCH", [&] { self->beginLaunch(params, paramsSize, sbt, {width, height, depth}); });
+    });
+}
+
+OxrtResult oxrtLaunchWait(OxrtPipeline pipeline, unsigned timeoutMs, int* done)
+{
+    return guard([&] {
+        const auto self = find(pipeline);
+        self->context->attempt("LAUNCH", [&] {
+            if (!done) fail(OXRT_ERROR_INVALID_VALUE, "the result pointer `done` is NULL");
+            *done = 1; // also where the launch ended in a failure
+            *done = self->waitLaunch(std::chrono::milliseconds(timeoutMs));
+        });
+    });
+}
+
+OxrtResult oxrtLaunchCancel(OxrtPipeline pipeline)
+{
+    return guard([&] { find(pipeline)->cancelLaunch(); });
+}
+
+OxrtResult oxrtPipelineGetLaunchReport(OxrtPipeline pipeline, OxrtLaunchReport* report)
+{
+    return guard([&] {
+        const auto self = find(pipeline);
+        if (!report) fail(OXRT_ERROR_INVALID_VALUE, "the result pointer `report` is NULL");
+        *report = self->lastReport();
+    });
+}
+
+OxrtResult oxrtLaunchGetProgress(OxrtPipeline pipeline, uint64_t* done, uint64_t* total)
+{
+    return guard([&] {
+        const auto self = find(pipeline);
+        if (!done || !total) fail(OXRT_ERROR_INVALID_VALUE, "the result pointer `%s` is NULL", done ? "total" : "done");
+        self->progress(*done, *total);
+    });
+}
