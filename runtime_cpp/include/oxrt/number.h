@@ -144,27 +144,27 @@ template <IntegerNumber T> OXRT_INLINE constexpr T modulo(T a, T b) {
 }
 
 /* Counts of the width or more (negative ones too) shift everything out: 0, or the sign for >> of signed numbers. */
-template <IntegerNumber T, IntegerNumber C> OXRT_INLINE constexpr Common<T, Rebind<C, ElementOf<T>>> shiftLeft(T value, C count) {
-    using R = Common<T, Rebind<C, ElementOf<T>>>;
-    using U = typename UnsignedOf<ElementOf<T>>::Type;
-    using V = Rebind<R, U>;
-    constexpr U bits = U(sizeof(U) * 8);
-    const V places = V(convert<U>(count));
-    const V shifted = V(convert<U>(value)) << (places & V(bits - 1));
-    return R(convert<ElementOf<T>>(V(select(places < V(bits), shifted, V(U(0))))));
-}
-template <IntegerNumber T, IntegerNumber C> OXRT_INLINE constexpr Common<T, Rebind<C, ElementOf<T>>> shiftRight(T value, C count) {
+template <IntegerNumber T, IntegerNumber C> OXRT_INLINE constexpr auto shiftLeft(T value, C count) {
     using E = ElementOf<T>;
     using R = Common<T, Rebind<C, E>>;
     using U = typename UnsignedOf<E>::Type;
-    using V = Rebind<R, U>;
     constexpr U bits = U(sizeof(U) * 8);
-    const V places = V(convert<U>(count));
-    const R shifted = R(value) >> R(convert<E>(V(places & V(bits - 1))));
+    const Rebind<C, U> places = convert<U>(count);
+    const Rebind<C, U> within = places & U(bits - 1);
+    const Rebind<R, U> shifted = Rebind<R, U>(convert<U>(value)) << Rebind<R, U>(within);
+    return select(places < bits, R(convert<E>(shifted)), R(E(0)));
+}
+template <IntegerNumber T, IntegerNumber C> OXRT_INLINE constexpr auto shiftRight(T value, C count) {
+    using E = ElementOf<T>;
+    using R = Common<T, Rebind<C, E>>;
+    using U = typename UnsignedOf<E>::Type;
+    constexpr U bits = U(sizeof(U) * 8);
+    const Rebind<C, U> places = convert<U>(count);
+    const Rebind<C, E> within = convert<E>(Rebind<C, U>(places & U(bits - 1)));
     R all = R(E(0));
     if constexpr (isSigned<E>)
         all = R(value) >> R(E(bits - 1));
-    return select(places < V(bits), shifted, all);
+    return select(places < bits, R(value) >> R(within), all);
 }
 
 template <int PLACES> OXRT_INLINE constexpr int64_t shiftRightLogical(int64_t value) { return int64_t(uint64_t(value) >> PLACES); }
