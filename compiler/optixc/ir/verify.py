@@ -231,7 +231,8 @@ def _item(expression: IndexRef | TupleItem | ElementRef | ArrayShape) -> Iterato
                 yield f"item of {expression.base.type} is {expression.type}"
         case TupleItem():
             base = expression.base.type
-            if not isinstance(base, Tuple) or not 0 <= expression.index < len(base.items) or base.items[expression.index] != expression.type:
+            items = base.items if isinstance(base, Tuple) else ()
+            if not 0 <= expression.index < len(items) or items[expression.index] != expression.type:
                 yield f"item {expression.index} of {base} is {expression.type}"
         case ElementRef():
             array = expression.array.type
