@@ -1,0 +1,114 @@
+"""The explicit host surface: OptiX's objects, from the device context on."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from types import ModuleType
+from typing import Any
+
+from optixc import driver
+from optixc.cache import Cache
+from optixc.enums_scene import BuildFlags
+from optixc.errors import InvalidValueError
+from optixc.host.accel import Accel
+from optixc.host.context import LOG_WARNING, Context, LogCallback
+from optixc.host.groups import Module, Program, ProgramGroup
+from optixc.host.inputs import BuildInput, MotionOptions
+from optixc.host.pipeline import Pipeline
+from optixc.options import BoundValue, CompileOptions, PipelineCompileOptions, Simd
+
+_Slot = Program | None
+
+
+class DeviceContext(Context):
+    """Owns acceleration structures, modules and pipelines, and the cache folder of compiled pipelines.
+
+    `validation` checks launches and makes them report what OptiX leaves undefined; `log_callback(level, tag, message)` gets what the
+    runtime and the compiler say; `cache_dir` is the folder of compiled pipelines (default: OPTIXC_CACHE_DIR, else the user's cache
+    folder); `threads` bounds launches and builds.
+    """
+
+    def __init__(
+        self,
+        validation: bool = False,
+        log_callback: LogCallback | None = None,
+        cache_dir: str | Path | None = None,
+        threads: int | None = None,
+    ) -> None:
+        super().__init__(validation, log_callback, threads)
+        self.cache = Cache(Path(cache_dir) if cache_dir is not None else None, lambda text: self.log(LOG_WARNING, "cache", text))
+
+    def module_create(
+        self, source: ModuleType | str | Path | Sequence[Any], *, include_dirs: Sequence[str | Path] = ()
+    ) -> Module:
+        """The programs of a Python module or shader file (parsed, never run), or of a list of live functions.
+
+        Raises CompileError with every error that the shader has, FileIoError for a file that cannot be read.
+        """
+        _ = self.handle
+        unit = self._open(source, [Path(folder) for folder in include_dirs])
+        return Module(unit, unit.programs)
+
+    def _open(self, source: Any, include_dirs: list[Path]) -> driver.Unit:
+        if isinstance(source, ModuleType):
+            path = getattr(source, "__file__", None)
+            if path is None:
+                raise InvalidValueError(f"module {source.__name__} has no file; pass a list of its programs instead")
+            return driver.open_file(Path(path), include_dirs, self.cache)
+        if isinstance(source, str | Path):
+            return driver.open_file(Path(source), include_dirs, self.cache)
+        if isinstance(source, Sequence) and source:
+            return driver.open_functions(source)
+        raise InvalidValueError(f"module_create takes a Python module, a path, or a list of programs, not {source!r:.60}")
+
+    def program_group_create(self, **programs: _Slot) -> ProgramGroup:
+        """A group: `raygen=`, `miss=`, `exception=`, or `closesthit=, anyhit=, intersection=`, or `direct_callable=,
+        continuation_callable=`; each a program of a module or None."""
+        _ = self.handle
+        return ProgramGroup(programs)
+
+    def pipeline_create(
+        self,
+        groups: Sequence[ProgramGroup],
+        max_trace_depth: int = 1,
+        *,
+        options: PipelineCompileOptions | None = None,
+        bound_values: Mapping[str, BoundValue] | None = None,
+        simd: Simd = "auto",
+        math: str = "precise",
+        debug: bool = False,
+    ) -> Pipeline:
+        """Compiles the programs of `groups` together, or takes them from the cache.
+
+        `max_trace_depth` bounds recursive traces; `bound_values` become constants; `simd` is "auto", 1, 8 or 16 lanes; `math` is
+        "precise" or "fast"; `debug` checks array bounds and assertions and keeps line information.
+        """
+        _ = self.handle
+        if isinstance(groups, ProgramGroup) or not isinstance(groups, Sequence) or not groups:
+            raise InvalidValueError("pipeline_create takes a list of program groups, at least one")
+        for group in groups:
+            if not isinstance(group, ProgramGroup):
+                raise InvalidValueError(f"pipeline_create takes program groups, not {type(group).__name__}")
+        used = list(dict.fromkeys(program for group in groups for program in group.programs.values()))
+        units = list(dict.fromkeys(program.module.unit for program in used))
+        chosen = CompileOptions(
+            pipeline=options or PipelineCompileOptions(),
+            max_trace_depth=max_trace_depth,
+            simd=simd,
+            math=math,
+            debug=debug,
+            validation=self.validation,
+            bound_values=dict(bound_values or {}),
+        )
+        built = driver.build(units, [program.name for program in used], chosen, self.cache)
+        return Pipeline(self, groups, str(built.library), built.params, built.report)
+
+    def accel_build(
+        self,
+        inputs: Sequence[BuildInput],
+        build_flags: BuildFlags | int = BuildFlags.NONE,
+        motion_options: MotionOptions | None = None,
+    ) -> Accel:
+        """Builds a GAS from geometry inputs (all of one type) or an IAS from one instances input."""
+        return Accel(self, inputs, build_flags, motion_options)

@@ -1,0 +1,200 @@
+"""The command `optixc`: compiles shader files ahead of time, prints what each stage made of them, tells what is installed.
+
+Exit codes: 0 fine, 1 the shader has errors (all printed on standard error), 2 wrong usage, 3 the tool chain is missing or failed.
+"""
+
+from __future__ import annotations
+
+import argparse
+import ast
+import json
+import shutil
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+
+from optixc import driver, installation, toolchain
+from optixc.api import DeviceContext
+from optixc.cache import Cache, default_folder, max_size
+from optixc.codegen.header import emit_header
+from optixc.diagnostics import CompileError
+from optixc.errors import FileIoError, OptixError
+from optixc.frontend import report
+from optixc.ir import layout, nodes
+from optixc.ir.text import print_module
+from optixc.options import MAX_TRACE_DEPTH, TARGETS, BoundValue, CompileOptions
+from optixc.version import __version__
+
+EXIT_SHADER, EXIT_USAGE, EXIT_TOOLCHAIN = 1, 2, 3
+EMIT_FORMS = ("ast", "types", "ir", "cpp", "asm", "header")
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Runs the command and gives its exit code."""
+    parser = _parser()
+    chosen = parser.parse_args(arguments)
+    try:
+        if chosen.print_config:
+            print(_configuration())
+            return 0
+        if chosen.shader is None:
+            parser.error("name a shader file (or --version, --print-config)")
+        return _compile(chosen)
+    except CompileError as error:
+        print(error, file=sys.stderr)
+        return EXIT_SHADER
+    except toolchain.ToolchainError as error:
+        print(f"optixc: {error}", file=sys.stderr)
+        return EXIT_TOOLCHAIN
+    except OptixError as error:
+        print(f"optixc: {error}", file=sys.stderr)
+        return EXIT_USAGE
+
+
+def _parser() -> argparse.ArgumentParser:
+    parser = argparse.ArgumentParser(prog="optixc", description="Compiles shader programs in restricted Python to a shared object.")
+    parser.add_argument("shader", nargs="?", type=Path, help="the shader file; it is parsed, never run")
+    parser.add_argument("-o", dest="output", type=Path, metavar="STEM", help="write STEM.so, STEM.h and STEM.json (default: the shader's name)")
+    parser.add_argument("--emit", choices=EMIT_FORMS, help="print this form on standard output and write nothing")
+    parser.add_argument("--print-after", metavar="PASS", help="print the IR after this pass on standard error")
+    parser.add_argument("--bind", action="append", default=[], metavar="NAME=VALUE", help="make a launch parameter a constant")
+    parser.add_argument("-I", dest="include_dirs", action="append", default=[], type=Path, metavar="DIR", help="look for helper files here too")
+    parser.add_argument("--simd", choices=("auto", "1", "8", "16"), default="auto", help="lanes of a packet (default: auto)")
+    parser.add_argument("--target", choices=TARGETS, default="native", help="instruction set (default: this machine's)")
+    parser.add_argument("--math", choices=("precise", "fast"), default="precise")
+    parser.add_argument("--max-trace-depth", type=int, default=1, metavar="N", help=f"nesting of traces, 0 to {MAX_TRACE_DEPTH} (default: 1)")
+    parser.add_argument("--debug", action="store_true", help="bounds checks, assertions, line information, no optimisation")
+    parser.add_argument("-O", dest="optimization", type=int, choices=(0, 1, 2, 3), default=3, help="optimisation of the C++ compiler (default: 3)")
+    parser.add_argument("--depfile", type=Path, metavar="FILE", help="write the files that the output depends on, in make's form")
+    parser.add_argument("--version", action="version", version=f"optixc {__version__}")
+    parser.add_argument("--print-config", action="store_true", help="compilers, Embree, include folder, cache")
+    return parser
+
+
+def _compile(chosen: argparse.Namespace) -> int:
+    if not chosen.shader.is_file():
+        raise FileIoError(f"{chosen.shader} is not a file")
+    if chosen.emit == "ast":
+        print(ast.dump(ast.parse(chosen.shader.read_text(encoding="utf-8-sig"), str(chosen.shader)), indent=2))
+        return 0
+    options = CompileOptions(
+        max_trace_depth=chosen.max_trace_depth,
+        simd="auto" if chosen.simd == "auto" else int(chosen.simd),
+        math=chosen.math,
+        debug=chosen.debug,
+        target=chosen.target,
+        optimization=chosen.optimization,
+        bound_values=dict(_bound_value(text) for text in chosen.bind),
+    )
+    store = Cache(None, lambda text: print(f"optixc: warning: {text}", file=sys.stderr))
+    unit = driver.open_file(chosen.shader, chosen.include_dirs, store)
+    names = [program["name"] for program in unit.programs]
+    if chosen.emit is not None or chosen.print_after is not None:
+        return _emit(chosen, unit, names, options, store)
+    _write(chosen, unit, names, options, store)
+    return 0
+
+
+def _emit(chosen: argparse.Namespace, unit: driver.Unit, names: list[str], options: CompileOptions, store: Cache) -> int:
+    result = unit.result
+    if chosen.emit == "types":
+        print(report.print_types(result.checked))
+        return 0
+    if chosen.emit == "ir" and chosen.print_after is None:
+        print(print_module(result.module))
+        return 0
+    emitted = driver.emit([result.module], names, options, chosen.print_after)
+    if chosen.emit == "asm":
+        print(toolchain.compile_assembly(emitted.text, toolchain.find_compiler(store.memory), driver.recipe(options)))
+    elif chosen.emit == "header":
+        print(emit_header(emitted.pipeline))
+    elif chosen.emit == "cpp":
+        print(emitted.text)
+    elif chosen.emit == "ir":
+        print(print_module(emitted.pipeline))
+    return 0
+
+
+def _write(chosen: argparse.Namespace, unit: driver.Unit, names: list[str], options: CompileOptions, store: Cache) -> None:
+    stem: Path = chosen.output or Path(chosen.shader.stem)
+    built = driver.build([unit], names, options, store)
+    emitted = driver.emit([unit.result.module], names, options)
+    outputs = [stem.with_name(stem.name + suffix) for suffix in (".so", ".h", ".json")]
+    try:
+        stem.parent.mkdir(parents=True, exist_ok=True)
+        shutil.copyfile(built.library, outputs[0])
+        outputs[1].write_text(emit_header(emitted.pipeline))
+        outputs[2].write_text(json.dumps(_manifest(unit, emitted.pipeline, built), indent=2) + "\n")
+        if chosen.depfile is not None:
+            files = [str(chosen.shader), *unit.result.dependencies]
+            chosen.depfile.write_text(f"{' '.join(map(_make_word, map(str, outputs)))}: {' '.join(map(_make_word, dict.fromkeys(files)))}\n")
+    except OSError as error:
+        raise FileIoError(f"{error.filename or stem} cannot be written: {error.strerror}") from error
+
+
+def _manifest(unit: driver.Unit, pipeline: nodes.Pipeline, built: driver.Built) -> dict[str, object]:
+    return {
+        "optixc": __version__,
+        "params": built.params,
+        "programs": unit.programs,
+        "structs": {struct.name: {"size": layout.size_of(struct), "layout": layout.describe(struct)} for struct in _memory_structs(pipeline)},
+        "max_trace_depth": pipeline.options.max_trace_depth,
+        "lanes": pipeline.options.lanes,
+        "compiler": built.report["compiler"],
+        "features": built.report["features"],
+        "dependencies": list(unit.result.dependencies),
+    }
+
+
+def _memory_structs(pipeline: nodes.Pipeline) -> list[layout.Struct]:
+    return [struct for struct in pipeline.structs if struct.kind is layout.StructKind.PLAIN]
+
+
+def _bound_value(text: str) -> tuple[str, BoundValue]:
+    name, separator, value = text.partition("=")
+    if not separator or not name.isidentifier():
+        raise OptixError(f"--bind takes NAME=VALUE, not {text!r}")
+    try:
+        parsed = ast.literal_eval(value)
+    except (ValueError, SyntaxError) as error:
+        raise OptixError(f"--bind {name}: {value!r} is not a number, a bool or a tuple of them") from error
+    bound: BoundValue = parsed
+    return name, bound
+
+
+def _make_word(path: str) -> str:
+    return path.replace("\\", "\\\\").replace(" ", "\\ ").replace("#", "\\#").replace("$", "$$")
+
+
+def _configuration() -> str:
+    """What is installed, a line each; what is missing says so instead of failing."""
+    lines = [f"optixc {__version__}"]
+    found = toolchain.installed_compilers()
+    lines += [f"compiler: {one}" for one in found] or ["compiler: none found; install g++ 12 or clang++ 16 or newer"]
+    lines.append(f"processor lanes: {toolchain.processor_lanes()}")
+    for name, ask in (("include folder", installation.include_folder), ("library", installation.library_path)):
+        try:
+            lines.append(f"{name}: {ask()}")
+        except OptixError as error:
+            lines.append(f"{name}: {error}")
+    lines += _embree_lines()
+    lines.append(f"cmake package: {installation.cmake_folder()}")
+    lines.append(f"cache: {default_folder()}, at most {max_size()} bytes" if max_size() else "cache: off (OPTIXC_CACHE_MAXSIZE=0)")
+    return "\n".join(lines)
+
+
+def _embree_lines() -> list[str]:
+    path = installation.embree_path()
+    try:
+        info = DeviceContext().info()
+    except OptixError as error:
+        return [f"embree: {path or 'not found'}: {error}"]
+    return [
+        f"embree: {info['embree_version']} ({info['embree_path']})",
+        f"embree instance levels: {info['embree_max_instance_levels']}, back-face culling: {info['embree_backface_culling']}",
+        f"threads: {info['threads']}",
+    ]
+
+
+if __name__ == "__main__":
+    sys.exit(main())

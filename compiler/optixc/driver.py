@@ -1,0 +1,249 @@
+"""From shader files and live functions to a shared object: front end, passes, code generation, tool chain, with the cache in between.
+
+A file's programs are known to the cache by the text of the file and of every helper it imports, so that a hit neither parses nor
+starts a process. Live functions have no such key: they are checked and emitted each time, and the C++ text is their key.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+from optixc import passes, toolchain
+from optixc.cache import Cache, Json, digest
+from optixc.codegen import cpp_pipeline
+from optixc.errors import FileIoError, InvalidOperationError, InvalidValueError, NotSupportedError
+from optixc.frontend.compile import FrontendResult, compile_file, compile_functions
+from optixc.installation import include_folder
+from optixc.ir import layout, nodes
+from optixc.ir import types as t
+from optixc.options import BoundValue, CompileOptions
+from optixc.passes.features import Features, features
+from optixc.passes.pipeline import link
+from optixc.version import __version__
+
+SPMD_LANES: tuple[int, ...] = ()
+"""Packet widths that the emitter knows."""
+
+
+class Unit:
+    """A shader module: its programs, and its IR once somebody needs it. `key` names its text to the cache, None for live functions."""
+
+    def __init__(self, name: str, programs: list[Json], key: str | None, make: Callable[[], FrontendResult]) -> None:
+        self.name = name
+        self.programs = programs
+        self.key = key
+        self._make = make
+        self._result: FrontendResult | None = None
+
+    @property
+    def result(self) -> FrontendResult:
+        """What the front end made of it."""
+        if self._result is None:
+            self._result = self._make()
+        return self._result
+
+
+@dataclass(frozen=True)
+class Built:
+    """A compiled pipeline: where it lies, its launch parameters (`name`, `layout`, `size`), what the report says."""
+
+    library: Path
+    params: Json | None
+    report: Json
+
+
+@dataclass(frozen=True)
+class Emitted:
+    """A pipeline as C++ text, with the linked IR and the features that it came from."""
+
+    text: str
+    pipeline: nodes.Pipeline
+    features: Features
+
+
+def open_file(path: Path, include_dirs: Sequence[Path], store: Cache) -> Unit:
+    """The module of a shader file; the front end runs only if the cache does not know the file's text. Raises CompileError."""
+    shown = path
+    key = digest("file", _compiler_stamp(), str(path.absolute()), *map(str, include_dirs), _read(path))
+    note = store.read_note(key)
+    if note is not None:
+        current = _dependencies_key(key, note["dependencies"])
+        if current is not None and current == note["key"]:
+            return Unit(path.stem, note["programs"], current, lambda: _again(shown, include_dirs, key, current))
+    result = compile_file(str(path), include_dirs=tuple(str(folder) for folder in include_dirs))
+    full_key = _dependencies_key(key, result.dependencies)
+    programs = describe_programs(result.module)
+    if full_key is not None:
+        store.write_note(key, {"dependencies": list(result.dependencies), "key": full_key, "programs": programs})
+    unit = Unit(path.stem, programs, full_key, lambda: result)
+    return unit
+
+
+def open_functions(functions: Sequence[Any]) -> Unit:
+    """The module of live functions. Raises CompileError."""
+    result = compile_functions(list(functions))
+    return Unit(result.module.name, describe_programs(result.module), None, lambda: result)
+
+
+def build(units: Sequence[Unit], names: Sequence[str], options: CompileOptions, store: Cache) -> Built:
+    """Compiles the named programs of the units into one pipeline, or finds it in the cache."""
+    began = time.perf_counter()
+    compiler = toolchain.find_compiler(store.memory)
+    plan = recipe(options)
+    known = None
+    if all(unit.key is not None for unit in units):
+        known = digest("pipeline", *(str(unit.key) for unit in units), *names, options.key(), compiler.identity, *_surroundings(plan))
+        note = store.read_note(known)
+        entry = store.find(note["entry"]) if note is not None else None
+        if note is not None and entry is not None:
+            report = {**note["report"], "compile_seconds": time.perf_counter() - began, "cache_hit": True}
+            return Built(entry.library, note["params"], report)
+    emitted = emit([unit.result.module for unit in units], names, options)
+    key = digest("library", emitted.text, *plan.flags(), compiler.identity, *_surroundings(plan))
+    entry = store.find(key)
+    if entry is None:
+        entry = store.store(key, {}, lambda output: toolchain.compile_shared(emitted.text, output, compiler, plan))
+    params = _describe_params(emitted.pipeline.params)
+    report = _describe(emitted, options, compiler)
+    if known is not None:
+        store.write_note(known, {"entry": key, "params": params, "report": report})
+    return Built(entry.library, params, {**report, "compile_seconds": time.perf_counter() - began, "cache_hit": entry.hit})
+
+
+def emit(modules: Sequence[nodes.Module], names: Sequence[str], options: CompileOptions, print_after: str | None = None) -> Emitted:
+    """Links the named programs, runs the passes, writes the C++ text."""
+    params = next((module.params for module in modules if module.params is not None), None)
+    linked = link(tuple(modules), tuple(names), pipeline_options(options, params))
+    pipeline = passes.run(linked, print_after=print_after)
+    found = features(pipeline)
+    return Emitted(cpp_pipeline.emit(pipeline, found), pipeline, found)
+
+
+def pipeline_options(options: CompileOptions, params: t.Struct | None) -> nodes.PipelineOptions:
+    """The part of the options that passes and emitters know."""
+    return nodes.PipelineOptions(
+        max_trace_depth=options.max_trace_depth,
+        lanes=lanes(options),
+        fast_math=options.math == "fast",
+        debug=options.debug,
+        validation=options.validation,
+        uses_motion_blur=options.pipeline.uses_motion_blur,
+        allow_opacity_micromaps=options.pipeline.allow_opacity_micromaps,
+        traversable_graph_flags=int(options.pipeline.traversable_graph_flags),
+        exception_flags=int(options.pipeline.exception_flags),
+        bound_values=tuple((name, _bound_literal(name, value, params)) for name, value in sorted(options.bound_values.items())),
+    )
+
+
+def lanes(options: CompileOptions) -> int:
+    """Lanes to compile for: what was asked, or the widest that the processor and the emitter have. Debug builds are scalar."""
+    if options.simd == "auto":
+        widest = 1 if options.debug else toolchain.processor_lanes(options.target)
+        return max((width for width in (1, *SPMD_LANES) if width <= widest), default=1)
+    if options.simd != 1 and options.simd not in SPMD_LANES:
+        raise NotSupportedError(f"simd={options.simd} is not available; use 1 or auto")
+    return int(options.simd)
+
+
+def describe_programs(module: nodes.Module) -> list[Json]:
+    """Name, kind and record struct of each program, as JSON."""
+    return [_describe_program(program) for program in module.programs]
+
+
+def _describe_program(program: nodes.Function) -> Json:
+    record = next((one.local.type for one in program.parameters if one.role is nodes.ParameterRole.RECORD), None)
+    assert program.kind is not None
+    described = isinstance(record, t.Struct)
+    return {
+        "name": program.name,
+        "kind": program.kind.value,
+        "record": layout.describe(record) if isinstance(record, t.Struct) else None,
+        "record_name": record.name if described and isinstance(record, t.Struct) else None,
+        "source": str(program.span),
+    }
+
+
+def _describe_params(params: t.Struct | None) -> Json | None:
+    if params is None:
+        return None
+    return {"name": params.name, "layout": layout.describe(params), "size": layout.size_of(params)}
+
+
+def _describe(emitted: Emitted, options: CompileOptions, compiler: toolchain.Compiler) -> Json:
+    return {
+        "compiler": str(compiler),
+        "programs": [program.name for program in emitted.pipeline.programs],
+        "features": {},
+        "traces": [],
+        "ignored": ["allow_clustered_geometry"] if options.pipeline.allow_clustered_geometry else [],
+    }
+
+
+def _bound_literal(name: str, value: BoundValue, params: t.Struct | None) -> nodes.Literal:
+    field = params.field(name) if params is not None else None
+    if field is None:
+        owner = params.name if params is not None else "the shader without launch parameters"
+        raise InvalidValueError(f"bound value {name!r} is no field of {owner}")
+    match field.type:
+        case t.Scalar(kind=kind):
+            wanted: tuple[type, ...] = {t.ScalarKind.BOOL: (bool,), t.ScalarKind.FLOAT: (int, float)}.get(kind, (int,))
+            if not isinstance(value, wanted) or (kind is not t.ScalarKind.BOOL and isinstance(value, bool)):
+                raise InvalidValueError(f"bound value {name!r} takes a {field.type}, not {value!r}")
+            return nodes.Literal(float(value) if kind is t.ScalarKind.FLOAT and not isinstance(value, tuple) else value, field.type)
+        case t.Vector(size=size):
+            if not isinstance(value, tuple) or len(value) != size:
+                raise InvalidValueError(f"bound value {name!r} takes {size} numbers, not {value!r}")
+            return nodes.Literal(value, field.type)
+        case _:
+            raise InvalidValueError(f"bound value {name!r} is a {field.type}; scalars and vectors can be bound")
+
+
+def _again(path: Path, include_dirs: Sequence[Path], key: str, expected: str) -> FrontendResult:
+    """The front end's result for a file that only the cache had looked at."""
+    result = compile_file(str(path), include_dirs=tuple(str(folder) for folder in include_dirs))
+    if _dependencies_key(key, result.dependencies) != expected:
+        raise InvalidOperationError(f"{path} or a file that it imports changed since module_create; create the module again")
+    return result
+
+
+def recipe(options: CompileOptions) -> toolchain.Build:
+    """How the tool chain compiles under these options."""
+    return toolchain.Build(include_folder(), options.target, options.optimization, options.math == "fast", options.debug)
+
+
+def _surroundings(plan: toolchain.Build) -> tuple[str, ...]:
+    """What besides program, options and compiler decides the machine code."""
+    return (_compiler_stamp(), _headers_digest(plan.include), toolchain.processor() if plan.target == "native" else "")
+
+
+def _dependencies_key(key: str, dependencies: Sequence[str]) -> str | None:
+    """The key of a file with the helpers it imports; None if one cannot be read any more."""
+    try:
+        return digest(key, *(part for path in dependencies for part in (path, Path(path).read_bytes())))
+    except OSError:
+        return None
+
+
+@cache
+def _compiler_stamp() -> str:
+    """Changes with every change of this package's own files: version, names, sizes and times."""
+    root = Path(__file__).parent
+    files = [path for folder in ("", "frontend", "ir", "passes", "codegen") for path in sorted((root / folder).glob("*.py"))]
+    return digest(__version__, *(f"{path.relative_to(root)}:{path.stat().st_size}:{path.stat().st_mtime_ns}" for path in files))
+
+
+@cache
+def _headers_digest(include: Path) -> str:
+    return digest(*(path.read_bytes() for path in sorted((include / "oxrt").glob("*.h"))))
+
+
+def _read(path: Path) -> bytes:
+    try:
+        return path.read_bytes()
+    except OSError as error:
+        raise FileIoError(f"{path} cannot be read: {error.strerror}") from error

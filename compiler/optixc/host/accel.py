@@ -1,0 +1,119 @@
+"""Acceleration structures: built from build inputs, named by 64-bit handles."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+
+from optixc.enums_scene import BuildFlags
+from optixc.errors import InvalidOperationError, InvalidValueError
+from optixc.host import library
+from optixc.host.context import Context
+from optixc.host.inputs import BuildInput, MotionOptions, pack_inputs
+
+
+class TraversableHandle(int):
+    """A traversable's 64-bit handle. It keeps its accel alive, so that parameters and records that hold it do."""
+
+    accel: Any
+
+    def __new__(cls, value: int, accel: Any = None) -> TraversableHandle:
+        made = super().__new__(cls, value)
+        made.accel = accel
+        return made
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return int, (int(self),)
+
+
+class Accel:
+    """A GAS or IAS. It lives as long as something refers to it (this object, a handle, a parent), or until `destroy()`."""
+
+    def __init__(self, context: Context, inputs: Sequence[BuildInput], build_flags: int, motion_options: MotionOptions | None) -> None:
+        self._accel: Any = None
+        self._context = context
+        self._build_flags = int(build_flags)
+        self._motion = motion_options
+        self._inputs: tuple[BuildInput, ...] = tuple(inputs) if isinstance(inputs, Sequence) else ()
+        options = library.ffi().new("OxrtAccelBuildOptions*")
+        options.buildFlags = int(build_flags)
+        if motion_options is not None:
+            options.motion.numKeys = motion_options.num_keys
+            options.motion.flags = int(motion_options.flags)
+            options.motion.timeBegin, options.motion.timeEnd = motion_options.time_begin, motion_options.time_end
+        packed = pack_inputs(inputs)
+        made = library.ffi().new("OxrtAccel*")
+        library.check(library.lib().oxrtAccelBuild(context.handle, options, packed.array, packed.count, made))
+        self._accel = made[0]
+        self._children = tuple(child for one in self._inputs for child in one.children())
+        self._inputs = ()
+        self._handle = int(self._info().handle)
+
+    @property
+    def handle(self) -> TraversableHandle:
+        """The 64-bit handle: slot and generation, never a pointer; stale after `destroy()`."""
+        return TraversableHandle(self._handle, self)
+
+    @property
+    def aabb(self) -> np.ndarray[Any, Any]:
+        """World bounds, float32 (2, 3): minimum and maximum; minimum above maximum if nothing can be hit."""
+        return np.array(list(self._info().aabb), np.float32).reshape(2, 3)
+
+    @property
+    def memory_usage(self) -> int:
+        """Bytes held by Embree and the runtime for this structure."""
+        return int(self._info().memoryUsage)
+
+    @property
+    def primitive_count(self) -> int:
+        """Primitives of a GAS, instances of an IAS."""
+        return int(self._info().primitiveCount)
+
+    def update(self, inputs: Sequence[BuildInput]) -> Accel:
+        """Refits to the same inputs with other coordinates; needs ALLOW_UPDATE. The handle stays."""
+        if not self._build_flags & BuildFlags.ALLOW_UPDATE:
+            raise InvalidOperationError("update() needs an accel that was built with BuildFlags.ALLOW_UPDATE")
+        packed = pack_inputs(inputs)
+        library.check(library.lib().oxrtAccelUpdate(self._live(), packed.array, packed.count))
+        self._children = tuple(child for one in inputs for child in one.children())
+        return self
+
+    def compact(self) -> Accel:
+        """This accel: Embree's builds are compact already, so there is nothing to copy. Needs ALLOW_COMPACTION, as in OptiX."""
+        if not self._build_flags & BuildFlags.ALLOW_COMPACTION:
+            raise InvalidOperationError("compact() needs an accel that was built with BuildFlags.ALLOW_COMPACTION")
+        self._live()
+        return self
+
+    def relocate(self) -> Accel:
+        """This accel: handles are no addresses here, so a structure never has to be told that it moved."""
+        self._live()
+        return self
+
+    def destroy(self) -> None:
+        """Makes the handle stale; memory goes when no IAS and no launch uses it. Nothing happens the second time."""
+        accel, self._accel = self._accel, None
+        if accel is not None and self._context.is_alive:
+            library.check(library.lib().oxrtAccelDestroy(accel))
+
+    def _live(self) -> Any:
+        if self._accel is None:
+            raise InvalidValueError("this accel was destroyed")
+        # Raises for a destroyed context and in a forked child.
+        _ = self._context.handle
+        return self._accel
+
+    def _info(self) -> Any:
+        info = library.ffi().new("OxrtAccelInfo*")
+        library.check(library.lib().oxrtAccelGetInfo(self._live(), info))
+        return info
+
+    def __del__(self) -> None:
+        if getattr(self, "_accel", None) is not None and not sys.is_finalizing():
+            self.destroy()
+
+    def __repr__(self) -> str:
+        return f"<Accel {self._handle:#x}{'' if self._accel is not None else ' destroyed'}>"

@@ -1,0 +1,116 @@
+"""The generic types that annotations in shaders use, and what an annotation of a struct's field means.
+
+`Array[T]`, `Array2[T]`, `Array3[T]` are views of numpy memory, `FixedArray[T, N]` elements by value, `Traversable` and `Texture`
+handles.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+from optixc.host import scalars
+from optixc.host.fields import ArrayField, FieldType, FixedArrayField, HandleField, MatrixField, ScalarField, VectorField
+from optixc.host.matrices import Matrix
+from optixc.host.vectors import Vector
+
+
+@dataclass(frozen=True)
+class ArrayAnnotation:
+    """What `Array2[float4]` is at run time."""
+
+    element: Any
+    rank: int
+
+
+@dataclass(frozen=True)
+class FixedArrayAnnotation:
+    """What `FixedArray[float32, 8]` is at run time."""
+
+    element: Any
+    size: int
+
+
+if TYPE_CHECKING:
+    Array = Array2 = Array3 = FixedArray = Traversable = Texture = Any
+else:
+
+    class Array:
+        """A 1-D view of host memory."""
+
+        def __class_getitem__(cls, element: Any) -> ArrayAnnotation:
+            return ArrayAnnotation(element, 1)
+
+    class Array2:
+        """A 2-D view of host memory: `a[y, x]`."""
+
+        def __class_getitem__(cls, element: Any) -> ArrayAnnotation:
+            return ArrayAnnotation(element, 2)
+
+    class Array3:
+        """A 3-D view of host memory: `a[z, y, x]`."""
+
+        def __class_getitem__(cls, element: Any) -> ArrayAnnotation:
+            return ArrayAnnotation(element, 3)
+
+    class FixedArray:
+        """N elements held by value."""
+
+        def __class_getitem__(cls, arguments: Any) -> FixedArrayAnnotation:
+            element, size = arguments
+            if not isinstance(size, int) or size < 1:
+                raise TypeError(f"FixedArray takes a type and a positive size, not {size!r}")
+            return FixedArrayAnnotation(element, size)
+
+    class Traversable:
+        """A 64-bit handle of something rays can be traced against."""
+
+    class Texture:
+        """A 64-bit handle of a texture."""
+
+
+_PYTHON_SCALARS = {bool: "bool", int: "int32", float: "float32"}
+_SCALARS: dict[type, str] = {
+    kind: kind.__name__
+    for kind in (
+        scalars.int8,
+        scalars.uint8,
+        scalars.int16,
+        scalars.uint16,
+        scalars.int32,
+        scalars.uint32,
+        scalars.int64,
+        scalars.uint64,
+        scalars.float16,
+        scalars.float32,
+        scalars.float64,
+    )
+}
+
+
+def field_type(annotation: Any) -> FieldType:
+    """The field type that an annotation names; TypeError for anything that has no layout in memory."""
+    if isinstance(annotation, ArrayAnnotation):
+        return ArrayField(field_type(annotation.element), annotation.rank)
+    if isinstance(annotation, FixedArrayAnnotation):
+        return FixedArrayField(field_type(annotation.element), annotation.size)
+    if isinstance(annotation, type):
+        return _class_field_type(annotation)
+    raise TypeError(f"{annotation!r} is not a type that a struct can hold")
+
+
+def _class_field_type(kind: type) -> FieldType:
+    name = _PYTHON_SCALARS.get(kind) or _SCALARS.get(kind)
+    if name is not None:
+        return ScalarField(name)
+    if issubclass(kind, Vector) and kind is not Vector:
+        return VectorField(kind)
+    if issubclass(kind, Matrix) and kind is not Matrix:
+        return MatrixField(kind)
+    if kind.__name__ in ("Traversable", "Texture") and kind.__module__ == __name__:
+        return HandleField(kind.__name__)
+    made = getattr(kind, "__optixc_field__", None)
+    if made is not None:
+        nested: FieldType = made
+        return nested
+    raise TypeError(f"{kind.__name__} is not a type that a struct can hold; decorate a class with @optixc.struct to nest it")

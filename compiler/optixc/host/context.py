@@ -1,0 +1,129 @@
+"""The runtime's context: options, log, ownership of everything made from it."""
+
+from __future__ import annotations
+
+import logging
+import sys
+import traceback
+import warnings
+from collections.abc import Callable
+from typing import Any
+
+from optixc.errors import InvalidDeviceContextError, InvalidValueError
+from optixc.host import library
+from optixc.installation import embree_path
+
+LogCallback = Callable[[int, str, str], None]
+LOG_FATAL, LOG_ERROR, LOG_WARNING, LOG_PRINT = 1, 2, 3, 4
+
+
+class OptixcWarning(UserWarning):
+    """Something works, though not as well as it could; the text says what to do."""
+
+
+class Context:
+    """Owns a runtime context; `validation` checks launches, `threads` bounds launches and builds (None: all cores of the process).
+
+    `log_callback(level, tag, message)` gets what the runtime and the compiler have to say, levels 1 (fatal) to 4 (print). An exception
+    inside is printed to standard error and nothing else happens. Without a callback warnings become Python warnings.
+    """
+
+    def __init__(
+        self,
+        validation: bool = False,
+        log_callback: LogCallback | None = None,
+        threads: int | None = None,
+        log_level: int = LOG_PRINT,
+    ) -> None:
+        self._handle: Any = None
+        if threads is not None and (not isinstance(threads, int) or isinstance(threads, bool) or threads < 1):
+            raise InvalidValueError(f"threads must be None or at least 1, not {threads!r}")
+        if log_callback is not None and not callable(log_callback):
+            raise InvalidValueError(f"log_callback must be callable, not {log_callback!r}")
+        if log_level not in range(5):
+            raise InvalidValueError(f"log_level must be 0 to 4, not {log_level!r}")
+        self.validation = bool(validation)
+        self._log_callback = log_callback
+        self._log_level = log_level
+        self._generation = library.process_generation()
+        self._create(threads or 0)
+
+    def _create(self, threads: int) -> None:
+        ffi, lib = library.ffi(), library.lib()
+        self._c_callback = ffi.callback("OxrtLogCallback", self._on_log)
+        embree = embree_path()
+        self._embree = ffi.NULL if embree is None else ffi.new("char[]", embree.encode())
+        options = ffi.new("OxrtContextOptions*")
+        options.logCallback = self._c_callback
+        options.logCallbackLevel = self._log_level
+        options.validation = self.validation
+        options.threads = threads
+        options.embreePath = self._embree
+        made = ffi.new("OxrtContext*")
+        library.check(lib.oxrtContextCreate(options, made))
+        self._handle = made[0]
+
+    @property
+    def handle(self) -> Any:
+        """The runtime's context; raises after `destroy()` and in a forked child."""
+        library.check_process(self._generation)
+        if self._handle is None:
+            raise InvalidDeviceContextError("this context was destroyed")
+        return self._handle
+
+    @property
+    def is_alive(self) -> bool:
+        """Whether objects of this context may still call the runtime."""
+        return self._handle is not None and self._generation == library.process_generation()
+
+    def info(self) -> dict[str, Any]:
+        """Threads, Embree's version and path, and what of Embree's properties matters here."""
+        ffi = library.ffi()
+        made = ffi.new("OxrtContextInfo*")
+        library.check(library.lib().oxrtContextGetInfo(self.handle, made))
+        version = int(made.embreeVersion)
+        return {
+            "threads": int(made.threads),
+            "embree_version": f"{version // 10000}.{version // 100 % 100}.{version % 100}",
+            "embree_path": ffi.string(made.embreePath).decode(),
+            "embree_max_instance_levels": int(made.embreeMaxInstanceLevels),
+            "embree_backface_culling": bool(made.embreeBackfaceCulling),
+            "isa": int(made.isa),
+        }
+
+    def set_log_callback(self, log_callback: LogCallback | None, level: int = LOG_PRINT) -> None:
+        """Replaces the callback and the level."""
+        self._log_callback, self._log_level = log_callback, level
+        library.check(library.lib().oxrtContextSetLogCallback(self.handle, self._c_callback, library.ffi().NULL, level))
+
+    def log(self, level: int, tag: str, message: str) -> None:
+        """Says something: to the callback, else warnings and errors as Python warnings."""
+        if level > self._log_level:
+            return
+        if self._log_callback is None:
+            if level <= LOG_WARNING:
+                warnings.warn(message, OptixcWarning, stacklevel=4)
+            return
+        try:
+            self._log_callback(level, tag, message)
+        except Exception:
+            print("optixc: exception in a log callback, ignored:", file=sys.stderr)
+            traceback.print_exc()
+
+    def _on_log(self, level: int, tag: Any, message: Any, data: Any) -> None:
+        text = library.ffi().string(message).decode("utf-8", "replace")
+        if self._log_callback is not None:
+            self.log(level, library.ffi().string(tag).decode("utf-8", "replace"), text)
+        elif level <= LOG_WARNING:
+            # Warnings may be turned into exceptions, which must not cross C; the logging module never raises.
+            logging.getLogger("optixc").warning(text)
+
+    def destroy(self) -> None:
+        """Destroys the context and everything made from it; waits for launches. Nothing happens the second time."""
+        handle, self._handle = self._handle, None
+        if handle is not None and self._generation == library.process_generation():
+            library.check(library.lib().oxrtContextDestroy(handle))
+
+    def __del__(self) -> None:
+        if getattr(self, "_handle", None) is not None and not sys.is_finalizing():
+            self.destroy()

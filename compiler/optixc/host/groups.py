@@ -1,0 +1,149 @@
+"""Modules as the host sees them, program groups made from their programs, and SBT records of groups."""
+
+from __future__ import annotations
+
+import weakref
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from optixc.enums_program import ProgramGroupKind
+from optixc.errors import InvalidValueError
+from optixc.host import structs
+
+_SLOT_PREFIXES = {
+    "raygen": "__raygen__",
+    "miss": "__miss__",
+    "exception": "__exception__",
+    "closesthit": "__closesthit__",
+    "anyhit": "__anyhit__",
+    "intersection": "__intersection__",
+    "direct_callable": "__direct_callable__",
+    "continuation_callable": "__continuation_callable__",
+}
+_KIND_SLOTS = {
+    ProgramGroupKind.RAYGEN: ("raygen",),
+    ProgramGroupKind.MISS: ("miss",),
+    ProgramGroupKind.EXCEPTION: ("exception",),
+    ProgramGroupKind.HITGROUP: ("closesthit", "anyhit", "intersection"),
+    ProgramGroupKind.CALLABLES: ("direct_callable", "continuation_callable"),
+}
+_MAY_BE_EMPTY = (ProgramGroupKind.MISS, ProgramGroupKind.HITGROUP)
+
+
+@dataclass(frozen=True)
+class Program:
+    """A program of a module: what `module["__raygen__x"]` gives. `record` is the layout of its SBT data, None if it uses none."""
+
+    module: Any
+    name: str
+    record: str | None
+    record_name: str | None
+
+
+class Module(Mapping[str, Program]):
+    """The programs of a shader file, Python module or list of functions, by name."""
+
+    def __init__(self, unit: Any, programs: list[dict[str, Any]]) -> None:
+        self.unit = unit
+        self._programs = {one["name"]: Program(self, one["name"], one["record"], one["record_name"]) for one in programs}
+
+    def __getitem__(self, name: str) -> Program:
+        found = self._programs.get(name)
+        if found is None:
+            raise InvalidValueError(f"the module has no program {name!r}; it has {', '.join(self._programs) or 'none'}")
+        return found
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._programs)
+
+    def __len__(self) -> int:
+        return len(self._programs)
+
+
+class ProgramGroup:
+    """Programs that an SBT record names together; `programs` maps slots (`closesthit` ...) to programs."""
+
+    def __init__(self, slots: dict[str, Program | None]) -> None:
+        kinds = [kind for kind, members in _KIND_SLOTS.items() if any(slot in members for slot in slots)]
+        if len(kinds) != 1:
+            raise InvalidValueError(
+                "a program group is one of raygen=, miss=, exception=, a hit group (closesthit=, anyhit=, intersection=) or callables "
+                f"(direct_callable=, continuation_callable=); got {', '.join(slots) or 'nothing'}"
+            )
+        self.kind = kinds[0]
+        for slot, program in slots.items():
+            if program is None:
+                continue
+            if not isinstance(program, Program):
+                raise InvalidValueError(f'{slot}= takes a program of a module, module["{_SLOT_PREFIXES[slot]}..."], not {program!r:.60}')
+            if not program.name.startswith(_SLOT_PREFIXES[slot]):
+                raise InvalidValueError(f"{slot}= takes a program whose name begins with {_SLOT_PREFIXES[slot]}, not {program.name}")
+        self.programs = {slot: program for slot, program in slots.items() if program is not None}
+        if not self.programs and self.kind not in _MAY_BE_EMPTY:
+            raise InvalidValueError(f"a group of kind {self.kind.name} needs a program")
+
+    def record(self, data: Any = None) -> Record:
+        """A record that runs this group, with `data`, an instance of the struct that its programs take."""
+        return Record(self, data)
+
+    def check_data(self, data: Any) -> None:
+        """Raises unless every program of the group can read `data`."""
+        layout = structs.layout_of(data)
+        if data is not None and (layout is None or isinstance(data, type)):
+            raise InvalidValueError(f"a record's data is an instance of an @ox.struct class, not {type(data).__name__}")
+        for program in self.programs.values():
+            if program.record is None:
+                continue
+            if layout is None:
+                raise InvalidValueError(f"{program.name} takes a {program.record_name} as its record's data; none was given")
+            if not f"{layout.text};".startswith(f"{program.record};"):
+                raise InvalidValueError(
+                    f"{program.name} takes a {program.record_name} ({program.record}) as its record's data, "
+                    f"not a {type(data).__name__} ({layout.text})"
+                )
+
+    def __repr__(self) -> str:
+        return f"<ProgramGroup {self.kind.name} {' '.join(program.name for program in self.programs.values())}>"
+
+
+class Record:
+    """An SBT record: a group and its data. Assigning `data`, or a field of it, shows in the next launch."""
+
+    def __init__(self, group: ProgramGroup, data: Any) -> None:
+        self.group = group
+        self._data: Any = None
+        self._tables: list[weakref.ref[Any]] = []
+        self.data = data
+
+    @property
+    def data(self) -> Any:
+        return self._data
+
+    @data.setter
+    def data(self, data: Any) -> None:
+        self.group.check_data(data)
+        self._data = data
+        if data is not None:
+            structs.observe(data, self)
+        self._tell()
+
+    def packed(self) -> bytearray:
+        """The bytes that follow the header."""
+        data: bytearray = self._data.packed() if self._data is not None else bytearray()
+        return data
+
+    def struct_changed(self, instance: Any) -> None:
+        """The data changed in place."""
+        if instance is self._data:
+            self._tell()
+
+    def watch(self, table: Any) -> None:
+        """`table.record_changed(record)` is called from now on."""
+        self._tables.append(weakref.ref(table))
+
+    def _tell(self) -> None:
+        for reference in self._tables:
+            table = reference()
+            if table is not None:
+                table.record_changed(self)

@@ -1,0 +1,307 @@
+"""Build inputs: arrays of the caller, checked for type, shape and order, as the runtime reads them.
+
+Arrays are copied by the build; they may change or go afterwards. A list of arrays in place of one array gives motion keys.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from optixc.enums_scene import GeometryFlags, InstanceFlags, MotionFlags
+from optixc.errors import InvalidValueError
+from optixc.host import library
+
+Keys = Any
+_IDENTITY = (1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0)
+
+
+@dataclass(frozen=True)
+class MotionOptions:
+    """OptiX's OptixMotionOptions: keys spread evenly from `time_begin` to `time_end`."""
+
+    num_keys: int = 1
+    time_begin: float = 0.0
+    time_end: float = 1.0
+    flags: MotionFlags = MotionFlags.NONE
+
+
+@dataclass(frozen=True)
+class Instance:
+    """One instance: a traversable (accel, handle or transform) under a 3x4 object-to-world transform."""
+
+    traversable: Any
+    transform: Any = None
+    instance_id: int = 0
+    sbt_offset: int = 0
+    visibility_mask: int = 255
+    flags: InstanceFlags | int = InstanceFlags.NONE
+
+
+def take_array(value: Any, dtype: Any, shape: tuple[int | str, ...], where: str) -> np.ndarray[Any, Any]:
+    """`value` itself if it is a C-contiguous array of `dtype` and `shape` (names stand for any size), else a clear error."""
+    wanted = f"{where} takes a C-contiguous {np.dtype(dtype).name} array of shape ({', '.join(map(str, shape))}{',' if len(shape) == 1 else ''})"
+    if not isinstance(value, np.ndarray):
+        raise InvalidValueError(f"{wanted}, not {type(value).__name__}; make one with numpy.ascontiguousarray(..., numpy.{np.dtype(dtype).name})")
+    if value.dtype != dtype:
+        raise InvalidValueError(f"{wanted}, not {value.dtype}; convert with array.astype(numpy.{np.dtype(dtype).name})")
+    fits = value.ndim == len(shape) and all(isinstance(want, str) or want == got for want, got in zip(shape, value.shape, strict=True))
+    if not fits:
+        raise InvalidValueError(f"{wanted}, not of shape {value.shape}")
+    if not value.flags.c_contiguous:
+        raise InvalidValueError(f"{wanted}; this one is not contiguous, use numpy.ascontiguousarray(array)")
+    return value
+
+
+def take_index_array(value: Any, shape: tuple[int | str, ...], where: str) -> np.ndarray[Any, Any]:
+    """Indices as uint32; int32 and uint16 are taken as well, negative ones refused."""
+    if isinstance(value, np.ndarray) and value.dtype == np.int32:
+        array = take_array(value, np.int32, shape, where)
+        if array.size and int(array.min()) < 0:
+            raise InvalidValueError(f"{where} holds the negative index {int(array.min())}")
+        return array.view(np.uint32)
+    if isinstance(value, np.ndarray) and value.dtype == np.uint16:
+        return take_array(value, np.uint16, shape, where).astype(np.uint32)
+    return take_array(value, np.uint32, shape, where)
+
+
+@dataclass
+class CInputs:
+    """An array of OxrtBuildInput with everything it points to."""
+
+    array: Any
+    count: int
+    kept: list[Any] = field(default_factory=list)
+
+
+def pack_inputs(inputs: Sequence[BuildInput]) -> CInputs:
+    """Checks all inputs and lays them out for the runtime."""
+    if isinstance(inputs, BuildInput) or not isinstance(inputs, Sequence):
+        raise InvalidValueError(f"accel_build takes a list of build inputs, not {type(inputs).__name__}")
+    if not inputs:
+        raise InvalidValueError("an acceleration structure needs at least one build input; the list is empty")
+    packed = CInputs(library.ffi().new("OxrtBuildInput[]", len(inputs)), len(inputs))
+    for number, one in enumerate(inputs):
+        if not isinstance(one, BuildInput):
+            raise InvalidValueError(f"build input {number} is a {type(one).__name__}, not a BuildInput")
+        one.fill(packed.array[number], packed.kept)
+    return packed
+
+
+class BuildInput:
+    """What all build inputs share."""
+
+    def fill(self, target: Any, kept: list[Any]) -> None:
+        """Writes this input into an OxrtBuildInput; what it points to goes to `kept`."""
+        raise NotImplementedError
+
+    def children(self) -> tuple[Any, ...]:
+        """Traversables that this input refers to."""
+        return ()
+
+
+def _pointer(array: np.ndarray[Any, Any], c_type: str, kept: list[Any]) -> Any:
+    kept.append(array)
+    ffi = library.ffi()
+    return ffi.cast(c_type, array.ctypes.data) if array.size else ffi.NULL
+
+
+def _keys(value: Keys, shape: tuple[int | str, ...], where: str) -> list[np.ndarray[Any, Any]]:
+    arrays = list(value) if isinstance(value, list | tuple) else [value]
+    if not arrays:
+        raise InvalidValueError(f"{where} is an empty list; motion needs one array per key")
+    taken = [take_array(array, np.float32, shape, where if len(arrays) == 1 else f"{where}[{key}]") for key, array in enumerate(arrays)]
+    if any(array.shape != taken[0].shape for array in taken):
+        raise InvalidValueError(f"the motion keys of {where} must have one shape, not {', '.join(str(array.shape) for array in taken)}")
+    return taken
+
+
+def _fill_keys(arrays: list[np.ndarray[Any, Any]], kept: list[Any]) -> Any:
+    pointers = library.ffi().new("float*[]", [_pointer(array, "float*", kept) for array in arrays])
+    kept.append(pointers)
+    return pointers
+
+
+@dataclass(kw_only=True)
+class _Records:
+    """SBT members shared by the geometry inputs: one flag word for all records or one each, and the record of each primitive."""
+
+    flags: Any = GeometryFlags.NONE
+    num_sbt_records: int = 1
+    sbt_index_offsets: Any = None
+    primitive_index_offset: int = 0
+
+    def fill_records(self, target: Any, primitives: int, kept: list[Any], where: str) -> None:
+        count = self.num_sbt_records
+        if not isinstance(count, int) or not 1 <= count <= 1 << 24:
+            raise InvalidValueError(f"{where}: num_sbt_records must be 1 to 2**24, not {count!r}")
+        words = np.atleast_1d(np.asarray(self.flags, np.uint32))
+        if words.ndim != 1 or words.size not in (1, count):
+            raise InvalidValueError(f"{where}: flags is one word or one for each of the {count} records, not {words.size} words")
+        words = np.ascontiguousarray(np.broadcast_to(words, count))
+        if not 0 <= int(self.primitive_index_offset) <= 0xFFFFFFFF - primitives:
+            raise InvalidValueError(f"{where}: primitive_index_offset plus the number of primitives must stay below 2**32")
+        target.numSbtRecords = count
+        target.flags = _pointer(words, "uint32_t*", kept)
+        target.primitiveIndexOffset = int(self.primitive_index_offset)
+        if self.sbt_index_offsets is not None:
+            offsets = take_index_array(self.sbt_index_offsets, ("n",), f"{where}.sbt_index_offsets")
+            if offsets.size != primitives:
+                raise InvalidValueError(f"{where}: {offsets.size} sbt_index_offsets for {primitives} primitives")
+            if offsets.size and int(offsets.max()) >= count:
+                raise InvalidValueError(f"{where}: an sbt_index_offset is {int(offsets.max())}, though there are {count} records")
+            target.sbtIndexOffsets = _pointer(offsets, "uint32_t*", kept)
+
+
+@dataclass
+class BuildInputTriangles(_Records, BuildInput):
+    """Triangles: float32 vertices (n, 3), uint32 indices (m, 3) or None for vertices in threes; `pre_transform` 3x4 is baked in."""
+
+    vertices: Keys
+    indices: Any = None
+    pre_transform: Any = field(default=None, kw_only=True)
+    opacity_micromap: Any = field(default=None, kw_only=True)
+
+    def fill(self, target: Any, kept: list[Any]) -> None:
+        keys = _keys(self.vertices, ("n", 3), "BuildInputTriangles.vertices")
+        target.type = library.lib().OXRT_BUILD_INPUT_TRIANGLES
+        target.numKeys = len(keys)
+        target.vertices = _fill_keys(keys, kept)
+        target.numVertices = len(keys[0])
+        if self.indices is None:
+            if len(keys[0]) % 3:
+                raise InvalidValueError(f"BuildInputTriangles without indices takes vertices in threes, not {len(keys[0])}")
+            primitives = len(keys[0]) // 3
+        else:
+            indices = take_index_array(self.indices, ("m", 3), "BuildInputTriangles.indices")
+            if indices.size and int(indices.max()) >= len(keys[0]):
+                raise InvalidValueError(f"BuildInputTriangles.indices holds {int(indices.max())}, though there are {len(keys[0])} vertices")
+            target.indices = _pointer(indices, "uint32_t*", kept)
+            primitives = len(indices)
+        target.numPrimitives = primitives
+        if self.pre_transform is not None:
+            target.preTransform = _pointer(take_transform(self.pre_transform, "pre_transform"), "float*", kept)
+        self.fill_records(target, primitives, kept, "BuildInputTriangles")
+
+
+@dataclass
+class BuildInputCustomPrimitives(_Records, BuildInput):
+    """Custom primitives by their boxes: float32 (n, 6), min x y z then max x y z."""
+
+    aabbs: Keys
+
+    def fill(self, target: Any, kept: list[Any]) -> None:
+        keys = _keys(self.aabbs, ("n", 6), "BuildInputCustomPrimitives.aabbs")
+        target.type = library.lib().OXRT_BUILD_INPUT_CUSTOM_PRIMITIVES
+        target.numKeys = len(keys)
+        target.aabbs = _fill_keys(keys, kept)
+        target.numPrimitives = len(keys[0])
+        self.fill_records(target, len(keys[0]), kept, "BuildInputCustomPrimitives")
+
+
+@dataclass
+class BuildInputInstances(BuildInput):
+    """Instances: a list of `Instance`, or a list of traversables with arrays of their members for many at once.
+
+    The members are an array of n or one value for all; `transforms` is float32 (n, 3, 4).
+    """
+
+    instances: Sequence[Any]
+    transforms: Any = field(default=None, kw_only=True)
+    instance_ids: Any = field(default=None, kw_only=True)
+    sbt_offsets: Any = field(default=None, kw_only=True)
+    visibility_masks: Any = field(default=None, kw_only=True)
+    flags: Any = field(default=None, kw_only=True)
+
+    _DTYPE = np.dtype(
+        [
+            ("transform", np.float32, (12,)),
+            ("instance_id", np.uint32),
+            ("sbt_offset", np.uint32),
+            ("visibility_mask", np.uint32),
+            ("flags", np.uint32),
+            ("traversable", np.uint64),
+        ]
+    )
+
+    def children(self) -> tuple[Any, ...]:
+        return tuple(one.traversable if isinstance(one, Instance) else one for one in self.instances)
+
+    def fill(self, target: Any, kept: list[Any]) -> None:
+        if isinstance(self.instances, Instance) or not isinstance(self.instances, Sequence | np.ndarray):
+            raise InvalidValueError(f"BuildInputInstances takes a list of instances or traversables, not {type(self.instances).__name__}")
+        table = np.zeros(len(self.instances), self._DTYPE)
+        if len(self.instances) and isinstance(self.instances[0], Instance):
+            self._fill_from_objects(table)
+        else:
+            self._fill_from_arrays(table)
+        limits = (("instance_id", 1 << 28), ("sbt_offset", 1 << 28), ("visibility_mask", 256))
+        for name, limit in limits:
+            if len(table) and int(table[name].max()) >= limit:
+                raise InvalidValueError(f"{name} {int(table[name].max())} of an instance is not below {limit}")
+        if not np.isfinite(table["transform"]).all():
+            number = int(np.flatnonzero(~np.isfinite(table["transform"]).all(axis=1))[0])
+            raise InvalidValueError(f"the transform of instance {number} holds a value that is not finite")
+        target.type = library.lib().OXRT_BUILD_INPUT_INSTANCES
+        target.numSbtRecords = 1
+        target.numKeys = 1
+        target.numPrimitives = len(table)
+        target.instances = _pointer(table, "OxrtInstance*", kept)
+
+    def _fill_from_objects(self, table: np.ndarray[Any, Any]) -> None:
+        if any(value is not None for value in (self.transforms, self.instance_ids, self.sbt_offsets, self.visibility_masks, self.flags)):
+            raise InvalidValueError("members given as arrays go with a list of traversables, not with Instance objects")
+        for row, one in zip(table, self.instances, strict=True):
+            if not isinstance(one, Instance):
+                raise InvalidValueError(f"the list mixes Instance objects with {type(one).__name__}")
+            members = (one.instance_id, one.sbt_offset, one.visibility_mask, one.flags)
+            if any(not isinstance(member, int | np.integer) or not 0 <= member < 1 << 32 for member in members):
+                raise InvalidValueError(f"members of an instance are whole numbers of 32 bits, not {one!r}")
+            row["transform"] = _IDENTITY if one.transform is None else take_transform(one.transform, "Instance.transform").ravel()
+            row["instance_id"], row["sbt_offset"], row["visibility_mask"], row["flags"] = members
+            row["traversable"] = take_handle(one.traversable, "Instance.traversable")
+
+    def _fill_from_arrays(self, table: np.ndarray[Any, Any]) -> None:
+        count = len(table)
+        for number, one in enumerate(self.instances):
+            table[number]["traversable"] = take_handle(one, f"instance {number}")
+        if self.transforms is None:
+            table["transform"] = _IDENTITY
+        else:
+            transforms = take_array(self.transforms, np.float32, ("n", 3, 4), "BuildInputInstances.transforms")
+            if len(transforms) != count:
+                raise InvalidValueError(f"{len(transforms)} transforms for {count} instances")
+            table["transform"] = transforms.reshape(count, 12)
+        members = (
+            ("instance_id", self.instance_ids, 0),
+            ("sbt_offset", self.sbt_offsets, 0),
+            ("visibility_mask", self.visibility_masks, 255),
+            ("flags", self.flags, 0),
+        )
+        for name, given, default in members:
+            values = np.atleast_1d(np.asarray(default if given is None else given))
+            if values.dtype.kind not in "iu" or values.size not in (1, count) or (values.size and int(values.min()) < 0):
+                raise InvalidValueError(f"{name} of instances is one whole number or {count} of them, not {given!r:.60}")
+            table[name] = values
+
+
+def take_handle(value: Any, where: str) -> int:
+    """The 64-bit handle of an accel, a transform or a handle itself."""
+    handle = getattr(value, "handle", value)
+    if isinstance(handle, bool) or not isinstance(handle, int | np.integer) or not 0 <= handle < 1 << 64:
+        raise InvalidValueError(f"{where} takes an accel or a traversable handle, not {type(value).__name__}")
+    return int(handle)
+
+
+def take_transform(value: Any, where: str) -> np.ndarray[Any, Any]:
+    """A 3x4 matrix as float32, from anything that numpy makes one of."""
+    try:
+        array = np.ascontiguousarray(value, np.float32)
+    except (TypeError, ValueError) as error:
+        raise InvalidValueError(f"{where} takes a 3x4 matrix, not {type(value).__name__}") from error
+    if array.shape not in ((3, 4), (12,)):
+        raise InvalidValueError(f"{where} takes a 3x4 matrix, not shape {array.shape}")
+    return array

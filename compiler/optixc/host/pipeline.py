@@ -1,0 +1,183 @@
+"""A loaded pipeline: launches, headers of records, and the report of what was compiled."""
+
+from __future__ import annotations
+
+import sys
+import threading
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+from optixc.errors import InvalidDeviceContextError, InvalidOperationError, InvalidValueError, from_code
+from optixc.host import library, structs
+from optixc.host.context import Context
+from optixc.host.groups import ProgramGroup
+from optixc.host.sbt import ShaderBindingTable
+
+STEP_MS = 50
+_C_SLOTS = {"direct_callable": "directCallable", "continuation_callable": "continuationCallable"}
+
+
+@dataclass(frozen=True)
+class PipelineReport:
+    """What was compiled in, and why; `print(pipeline.report())` shows it."""
+
+    lanes: int
+    compiler: str
+    compile_seconds: float
+    cache_hit: bool
+    library: str
+    programs: tuple[str, ...]
+    params_size: int
+    max_trace_depth: int
+    features: dict[str, str | None] = field(default_factory=dict)
+    traces: tuple[str, ...] = ()
+    ignored: tuple[str, ...] = ()
+
+    def __str__(self) -> str:
+        source = "from the cache" if self.cache_hit else f"compiled in {self.compile_seconds:.2f} s"
+        lines = [
+            f"{len(self.programs)} programs, {self.lanes} lane{'s' if self.lanes > 1 else ''}, {source}, {self.compiler}",
+            f"library {self.library}",
+            f"launch parameters {self.params_size} bytes, trace depth {self.max_trace_depth}",
+            *(f"{'with' if reason else 'without'} {name}{f': {reason}' if reason else ''}" for name, reason in self.features.items()),
+            *(f"trace {one}" for one in self.traces),
+            *(f"ignored on a CPU: {one}" for one in self.ignored),
+        ]
+        return "\n".join(lines)
+
+
+class Pipeline:
+    """Programs compiled together; `launch` runs the raygen record's program once per launch index.
+
+    Launches of one pipeline from several threads are serialised. A launch holds everything that it names.
+    """
+
+    def __init__(
+        self, context: Context, groups: Sequence[ProgramGroup], path: str, params: dict[str, Any] | None, report: dict[str, Any]
+    ) -> None:
+        self._pipeline: Any = None
+        self._context = context
+        self._groups = tuple(groups)
+        self._params = params
+        self._params_type: type | None = None
+        self._lock = threading.Lock()
+        self._lib = library.lib()
+        ffi = library.ffi()
+        made = ffi.new("OxrtPipeline*")
+        library.check(self._lib.oxrtPipelineLoad(context.handle, path.encode(), made))
+        self._pipeline = made[0]
+        self._done = ffi.new("int*")
+        self._null = ffi.NULL
+        self._from_buffer = ffi.from_buffer
+        info = ffi.new("OxrtPipelineInfo*")
+        library.check(self._lib.oxrtPipelineGetInfo(self._pipeline, info))
+        self.uid = int(info.uid)
+        self._report = PipelineReport(
+            lanes=int(info.lanes), params_size=int(info.paramsSize), max_trace_depth=int(info.maxTraceDepth), library=path, **report
+        )
+
+    def launch(self, params: Any, sbt: ShaderBindingTable, width: int, height: int = 1, depth: int = 1) -> None:
+        """Runs width x height x depth launch indices and returns when all are done; Ctrl-C stops it within a second."""
+        context = self._context
+        if context._handle is None or self._pipeline is None or context._generation != library._Process.generation:
+            self._refuse_dead()
+        if type(params) is not self._params_type:
+            self._check_params(params)
+        if type(sbt) is not ShaderBindingTable:
+            raise InvalidValueError(f"sbt takes a ShaderBindingTable, not {type(sbt).__name__}")
+        with self._lock:
+            table = sbt.c_table(self)
+            if self._params is None:
+                data, size = self._null, 0
+            else:
+                packed = params.packed()
+                data, size = self._from_buffer(packed), len(packed)
+            self._run(data, size, table, width, height, depth)
+
+    def report(self) -> PipelineReport:
+        """What was compiled in and why, compile seconds and cache hit, trace forms."""
+        return self._report
+
+    def pack_header(self, group: ProgramGroup, data_size: int) -> bytes:
+        """The 32 bytes before the data of a record that runs `group` in this pipeline."""
+        ffi = library.ffi()
+        names = {slot: ffi.new("char[]", program.name.encode()) for slot, program in group.programs.items()}
+        desc = ffi.new("OxrtProgramGroupDesc*")
+        desc.kind = int(group.kind)
+        for slot, name in names.items():
+            setattr(desc, _C_SLOTS.get(slot, slot), name)
+        header = ffi.new("char[]", 32)
+        result = self._lib.oxrtSbtRecordPackHeader(self._pipeline, desc, data_size, header)
+        if result:
+            raise from_code(result)(f"{group!r} cannot be used with this pipeline: {library.last_message()}")
+        return bytes(ffi.buffer(header, 32))
+
+    def destroy(self) -> None:
+        """Unloads the pipeline; nothing happens the second time."""
+        with self._lock:
+            pipeline, self._pipeline = self._pipeline, None
+            if pipeline is not None and self._context.is_alive:
+                library.check(self._lib.oxrtPipelineDestroy(pipeline))
+
+    def _run(self, data: Any, size: int, table: Any, width: int, height: int, depth: int) -> None:
+        lib, pipeline, done = self._lib, self._pipeline, self._done
+        done[0] = 0
+        try:
+            result = lib.oxrtLaunchBegin(pipeline, data, size, table, width, height, depth)
+            if result:
+                library.check(result)
+            result = lib.oxrtLaunchWait(pipeline, STEP_MS, done)
+            while not done[0]:
+                result = lib.oxrtLaunchWait(pipeline, STEP_MS, done)
+        except (OverflowError, TypeError) as error:
+            size_text = f"{width!r} x {height!r} x {depth!r}"
+            raise InvalidValueError(f"the launch size must be whole numbers of 32 bits, not {size_text}") from error
+        except KeyboardInterrupt:
+            self._stop()
+            raise
+        if result:
+            raise self._failure(result)
+
+    def _stop(self) -> None:
+        """Cancels the launch that runs and waits for its end, so that nothing uses the caller's arrays any more."""
+        while not self._done[0]:
+            self._lib.oxrtLaunchCancel(self._pipeline)
+            if self._lib.oxrtLaunchWait(self._pipeline, STEP_MS, self._done):
+                return
+
+    def _failure(self, result: int) -> Exception:
+        message = library.last_message()
+        ffi = library.ffi()
+        report = ffi.new("OxrtLaunchReport*")
+        self._lib.oxrtPipelineGetLaunchReport(self._pipeline, report)
+        error = from_code(result)(message)
+        if report.faultCode:
+            error.fault_code = int(report.faultCode)
+            error.launch_index = tuple(int(index) for index in report.index)
+            error.path, error.line = ffi.string(report.path).decode(), int(report.line)
+        return error
+
+    def _check_params(self, params: Any) -> None:
+        if self._params is None:
+            return
+        layout = structs.layout_of(params)
+        name, text = self._params["name"], self._params["layout"]
+        if layout is None or isinstance(params, type):
+            raise InvalidValueError(f"this pipeline's launch parameters are a {name}, not {type(params).__name__}")
+        if layout.text != text:
+            raise InvalidValueError(
+                f"this pipeline's launch parameters are a {name} ({text}), not this {type(params).__name__} ({layout.text})"
+            )
+        self._params_type = type(params)
+
+    def _refuse_dead(self) -> None:
+        # Raises for a destroyed context and in a forked child.
+        _ = self._context.handle
+        if self._pipeline is None:
+            raise InvalidOperationError("this pipeline was destroyed")
+        raise InvalidDeviceContextError("this pipeline's context is gone")
+
+    def __del__(self) -> None:
+        if getattr(self, "_pipeline", None) is not None and not sys.is_finalizing():
+            self.destroy()

@@ -1,0 +1,69 @@
+"""What a user may choose about a compile: OptiX's pipeline options and ours, checked once, here.
+
+Values are plain data; nothing here knows compilers or the IR.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Literal
+
+from optixc.enums_program import ExceptionFlags
+from optixc.enums_scene import PrimitiveTypeFlags, TraversableGraphFlags
+from optixc.errors import InvalidValueError
+
+Simd = Literal["auto"] | int
+MAX_TRACE_DEPTH = 31
+TARGETS = ("native", "x86-64-v3", "x86-64-v4")
+BoundValue = bool | int | float | tuple[bool | int | float, ...]
+
+
+@dataclass(frozen=True)
+class PipelineCompileOptions:
+    """OptiX's OptixPipelineCompileOptions. Payload and attribute counts are taken from the shader's classes; if given they are limits.
+
+    `allow_clustered_geometry` is accepted and has no effect: there are no clusters on a CPU.
+    """
+
+    uses_motion_blur: bool = False
+    traversable_graph_flags: TraversableGraphFlags = TraversableGraphFlags.ANY
+    num_payload_values: int = 0
+    num_attribute_values: int = 2
+    exception_flags: ExceptionFlags = ExceptionFlags.NONE
+    uses_primitive_type_flags: PrimitiveTypeFlags = PrimitiveTypeFlags(0)
+    allow_opacity_micromaps: bool = False
+    allow_clustered_geometry: bool = False
+
+
+@dataclass(frozen=True)
+class CompileOptions:
+    """Everything that decides the machine code of a pipeline besides its programs."""
+
+    pipeline: PipelineCompileOptions = PipelineCompileOptions()
+    max_trace_depth: int = 1
+    simd: Simd = "auto"
+    math: str = "precise"
+    debug: bool = False
+    validation: bool = False
+    target: str = "native"
+    optimization: int = 3
+    bound_values: Mapping[str, BoundValue] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        if self.simd not in ("auto", 1, 8, 16):
+            raise InvalidValueError(f'simd must be "auto", 1, 8 or 16, not {self.simd!r}')
+        if self.math not in ("precise", "fast"):
+            raise InvalidValueError(f'math must be "precise" or "fast", not {self.math!r}')
+        if self.target not in TARGETS:
+            raise InvalidValueError(f"target must be one of {', '.join(TARGETS)}, not {self.target!r}")
+        if self.optimization not in (0, 1, 2, 3):
+            raise InvalidValueError(f"the optimisation level must be 0 to 3, not {self.optimization!r}")
+        if not isinstance(self.max_trace_depth, int) or not 0 <= self.max_trace_depth <= MAX_TRACE_DEPTH:
+            raise InvalidValueError(f"max_trace_depth must be 0 to {MAX_TRACE_DEPTH}, not {self.max_trace_depth!r}")
+
+    def key(self) -> str:
+        """A text that is equal exactly for equal options."""
+        bound = sorted((name, repr(value)) for name, value in self.bound_values.items())
+        rest = (self.max_trace_depth, self.simd, self.math, self.debug, self.validation, self.target, self.optimization)
+        return repr((self.pipeline, rest, bound))

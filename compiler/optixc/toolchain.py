@@ -1,0 +1,233 @@
+"""Finding a C++ compiler and running it: C++ text in, shared object or assembly out.
+
+A compiler is known by its real path, size and modification time, so that a look into the cache starts no process; its version is
+asked once and remembered in the cache folder. This module knows nothing of shaders.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import re
+import shutil
+import subprocess
+import tempfile
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import cache
+from pathlib import Path
+
+from optixc.enums_program import Result
+from optixc.errors import OptixError
+
+MIN_CLANG = 16
+MIN_GCC = 12
+_CANDIDATES = ("clang++", *(f"clang++-{n}" for n in range(21, MIN_CLANG - 1, -1)), "g++", *(f"g++-{n}" for n in range(15, MIN_GCC - 1, -1)))
+_BASE_FLAGS = (
+    "-std=c++20",
+    "-ffp-contract=off",
+    "-fwrapv",
+    "-fno-math-errno",
+    "-fno-trapping-math",
+    "-fPIC",
+    "-fno-exceptions",
+    "-fno-rtti",
+    "-fvisibility=hidden",
+)
+_FAST_MATH_FLAGS = ("-ffp-contract=fast",)
+_LOG_LINES = 30
+
+
+class ToolchainError(OptixError):
+    """No usable C++ compiler, or it refused our code; the text ends with the remedy or the compiler's first lines."""
+
+    code = Result.ERROR_INTERNAL_COMPILER_ERROR
+
+
+@dataclass(frozen=True)
+class Compiler:
+    """A C++ compiler on this machine; `kind` is "clang" or "gcc"."""
+
+    path: str
+    size: int
+    mtime_ns: int
+    kind: str
+    version: tuple[int, ...]
+
+    @property
+    def identity(self) -> str:
+        """What a cache key knows it by."""
+        return f"{self.path}:{self.size}:{self.mtime_ns}"
+
+    def __str__(self) -> str:
+        return f"{self.kind} {'.'.join(map(str, self.version))} ({self.path})"
+
+
+@dataclass(frozen=True)
+class Build:
+    """How to compile one text: instruction set, optimisation, floating point and debug information."""
+
+    include: Path
+    target: str = "native"
+    optimization: int = 3
+    fast_math: bool = False
+    debug: bool = False
+
+    def flags(self) -> tuple[str, ...]:
+        level = 0 if self.debug else self.optimization
+        return (
+            *_BASE_FLAGS,
+            *(_FAST_MATH_FLAGS if self.fast_math else ()),
+            f"-O{level}",
+            *(("-g",) if self.debug else ()),
+            f"-march={self.target}",
+            f"-I{self.include}",
+        )
+
+
+def find_compiler(memory: Path | None = None) -> Compiler:
+    """The compiler to use: OPTIXC_CXX, else the first clang++ of at least 16 or g++ of at least 12 on PATH.
+
+    `memory` is a folder where versions are remembered between processes; None or an unwritable folder costs one process a start.
+    """
+    chosen = os.environ.get("OPTIXC_CXX", "")
+    if chosen:
+        path = shutil.which(chosen)
+        if path is None:
+            raise ToolchainError(f"OPTIXC_CXX names {chosen!r}, which is not an executable; set it to a clang++ or g++, or unset it")
+        compiler = identify(path, memory)
+        if compiler is None or not is_new_enough(compiler):
+            raise ToolchainError(f"OPTIXC_CXX names {chosen!r}, which is not clang++ {MIN_CLANG} or newer or g++ {MIN_GCC} or newer")
+        return compiler
+    found = next(_usable(memory), None)
+    if found is not None:
+        return found
+    raise ToolchainError(
+        f"no C++ compiler found: install g++ {MIN_GCC} or newer (Debian: apt-get install g++) or clang++ {MIN_CLANG} or newer, "
+        "or set OPTIXC_CXX to one"
+    )
+
+
+def installed_compilers(memory: Path | None = None) -> tuple[Compiler, ...]:
+    """All usable compilers on PATH, the preferred one first, each real file once."""
+    return tuple({compiler.path: compiler for compiler in _usable(memory)}.values())
+
+
+def _usable(memory: Path | None) -> Iterator[Compiler]:
+    for name in _CANDIDATES:
+        path = shutil.which(name)
+        compiler = identify(path, memory) if path else None
+        if compiler is not None and is_new_enough(compiler):
+            yield compiler
+
+
+def is_new_enough(compiler: Compiler) -> bool:
+    """Whether it knows the C++20 that generated code uses."""
+    return compiler.version >= ((MIN_CLANG,) if compiler.kind == "clang" else (MIN_GCC,))
+
+
+def identify(path: str, memory: Path | None = None) -> Compiler | None:
+    """The compiler at `path`, or None if it is neither clang nor g++; runs `--version` only for a file never seen."""
+    real = os.path.realpath(path)
+    status = os.stat(real)
+    key = f"{real}:{status.st_size}:{status.st_mtime_ns}"
+    known = _remembered(memory).get(key)
+    if known is None:
+        known = _ask_version(path)
+        if memory is not None:
+            _remember(memory, key, known)
+    kind, version = known
+    return Compiler(real, status.st_size, status.st_mtime_ns, kind, tuple(version)) if kind else None
+
+
+def compile_shared(text: str, output: Path, compiler: Compiler, build: Build) -> None:
+    """Compiles C++ text to a shared object; `output` appears whole or not at all. With `debug` the text stays beside it."""
+    with tempfile.TemporaryDirectory(prefix="optixc-", dir=output.parent) as folder:
+        source = output.with_suffix(".cpp") if build.debug else Path(folder) / "pipeline.cpp"
+        source.write_text(text)
+        made = Path(folder) / "pipeline.so"
+        # Unknown pragmas and attributes of one compiler must not speak to users of the other, so warnings are off here;
+        # that generated code is clean under -Wall -Wextra is tested.
+        _run(compiler, [*build.flags(), "-w", "-shared", str(source), "-o", str(made), "-lm"])
+        os.replace(made, output)
+
+
+def compile_assembly(text: str, compiler: Compiler, build: Build) -> str:
+    """The assembly of C++ text, Intel syntax."""
+    with tempfile.TemporaryDirectory(prefix="optixc-") as folder:
+        source, made = Path(folder) / "pipeline.cpp", Path(folder) / "pipeline.s"
+        source.write_text(text)
+        _run(compiler, [*build.flags(), "-w", "-S", "-masm=intel", str(source), "-o", str(made)])
+        return made.read_text()
+
+
+@cache
+def processor() -> str:
+    """This machine's processor as `-march=native` sees it: model and feature flags, one short text."""
+    try:
+        # One read gives the first processor's block; the whole file takes milliseconds on many cores.
+        with open("/proc/cpuinfo", "rb", buffering=0) as file:
+            block = file.read(8192).decode("ascii", "replace").split("\n\n", 1)[0]
+    except OSError:
+        return os.uname().machine
+    wanted = ("vendor_id", "cpu family", "model\t", "stepping", "flags", "CPU part", "Features")
+    return "\n".join(line for line in block.splitlines() if line.startswith(wanted)) or os.uname().machine
+
+
+def processor_lanes(target: str = "native") -> int:
+    """The widest packet that the target's instruction set takes: 16 (AVX-512), 8 (AVX2) or 1."""
+    if target == "x86-64-v4":
+        return 16
+    if target == "x86-64-v3":
+        return 8
+    words = processor().split()
+    if all(word in words for word in ("avx512f", "avx512bw", "avx512dq", "avx512vl")):
+        return 16
+    return 8 if "avx2" in words else 1
+
+
+def _run(compiler: Compiler, arguments: list[str]) -> None:
+    try:
+        result = subprocess.run([compiler.path, *arguments], capture_output=True, text=True, errors="replace", check=False)
+    except OSError as error:
+        raise ToolchainError(f"{compiler.path} cannot be started: {error.strerror}; set OPTIXC_CXX to a working compiler") from error
+    if result.returncode != 0:
+        lines = result.stderr.strip().splitlines()[:_LOG_LINES]
+        head = f"{compiler} failed with exit code {result.returncode}; this is a bug of optixc unless the disk is full:"
+        raise ToolchainError("\n".join([head, *lines]))
+
+
+def _ask_version(path: str) -> tuple[str, tuple[int, ...]]:
+    try:
+        output = subprocess.run([path, "--version"], capture_output=True, text=True, errors="replace", check=False, timeout=60).stdout
+    except (OSError, subprocess.TimeoutExpired):
+        return "", ()
+    clang = re.search(r"clang version (\d+)\.(\d+)\.(\d+)", output)
+    if clang:
+        return "clang", tuple(map(int, clang.groups()))
+    gcc = re.search(r"\b(\d+)\.(\d+)\.(\d+)\b", output.splitlines()[0]) if "Free Software Foundation" in output else None
+    return ("gcc", tuple(map(int, gcc.groups()))) if gcc else ("", ())
+
+
+_versions: dict[str, tuple[str, tuple[int, ...]]] = {}
+
+
+def _remembered(memory: Path | None) -> dict[str, tuple[str, tuple[int, ...]]]:
+    if memory is not None and not _versions:
+        try:
+            stored = json.loads((memory / "compilers.json").read_text())
+            _versions.update({key: (kind, tuple(version)) for key, (kind, version) in stored.items()})
+        except (OSError, ValueError, AttributeError, TypeError):
+            return _versions
+    return _versions
+
+
+def _remember(memory: Path, key: str, known: tuple[str, tuple[int, ...]]) -> None:
+    _versions[key] = known
+    try:
+        memory.mkdir(parents=True, exist_ok=True)
+        with tempfile.NamedTemporaryFile("w", dir=memory, delete=False) as file:
+            json.dump(_versions, file)
+        os.replace(file.name, memory / "compilers.json")
+    except OSError:
+        return
