@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-import optixc as ox
 import pytest
-
 from harness import MODES, Harness
+
+import optixc as ox
 
 
 @pytest.fixture(scope="session", params=list(MODES))

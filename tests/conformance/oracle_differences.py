@@ -121,7 +121,8 @@ def _strict(events: list[dict[str, Any]], recorded: dict[str, Any], given: dict[
 
 
 def _brief(events: list[dict[str, Any]]) -> str:
-    return " ".join(f"{event['ev']}{event['rec']}.{event.get('prim', '-')}@{number(event.get('tmax', event.get('t', 0))):g}" for event in events)
+    return " ".join(f"{event['ev']}{event['rec']}.{event.get('prim', '-')}@{number(event.get('tmax', event.get('t', 0))):g}"
+                    for event in events)
 
 
 def _explain(probe: Probe, given: dict[str, Any], ours: list[dict[str, Any]], theirs: list[dict[str, Any]], known: Known,

@@ -10,12 +10,12 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-import optixc as ox
 import recorder as layout
-
 from harness import Harness
 from oracle_files import Probe, number, numbers
 from oracle_scene import handle_of
+
+import optixc as ox
 
 EVENT_NAMES = {layout.EVENT_INTERSECTION: "IS", layout.EVENT_REPORT: "RP", layout.EVENT_ANYHIT: "AH", layout.EVENT_CLOSESTHIT: "CH",
                layout.EVENT_MISS: "MS"}

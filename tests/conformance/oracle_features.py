@@ -11,11 +11,11 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-import optixc as ox
-
 from harness import Harness
 from oracle_files import Probe
 from oracle_scene import build
+
+import optixc as ox
 
 TRIANGLE = {"type": "triangles", "vertices": [[0, 0, 0, 1, 0, 0, 0, 1, 0]], "flags": [0], "numSbtRecords": 1}
 MOTION = {"numKeys": 2, "flags": 0, "timeBegin": 0.0, "timeEnd": 1.0}
@@ -87,8 +87,9 @@ FEATURES: dict[str, Feature] = {
     "random vertex access": Feature(False, _shader("random_access.py")),
     "random instance access": Feature(False, _shader("random_instances.py")),
     "hit objects": Feature(False, _shader("hit_objects.py")),
+    "traverse data": Feature(False, lambda harness: ox.make_hit_object),
     "callables": Feature(False, _shader("callables.py")),
-    "exceptions": Feature(False, _shader("exceptions.py")),
+    "exceptions": Feature(False, _shader("throwing.py")),
     "payload types": Feature(False, _shader("payload_types.py")),
     "payload of 32 words": Feature(True, _shader("payload32.py")),
 }

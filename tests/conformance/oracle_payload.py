@@ -5,11 +5,11 @@ from __future__ import annotations
 import re
 
 import numpy as np
-import optixc as ox
 import payload32
-
 from harness import Harness
 from oracle_files import Probe
+
+import optixc as ox
 
 MAX_ROWS = 256
 DISABLE_ANYHIT, DISABLE_CLOSESTHIT = 1, 8

@@ -10,9 +10,9 @@ from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
-import optixc as ox
-
 from oracle_files import number, numbers
+
+import optixc as ox
 
 INDEX_TYPES = {1: np.uint8, 2: np.uint16, 4: np.uint32}
 FLOAT2, FLOAT3, HALF2, HALF3, SNORM16_2, SNORM16_3 = 0x2122, 0x2121, 0x2123, 0x2124, 0x2125, 0x2126

@@ -10,7 +10,10 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from harness import Harness
+from oracle_callables import check_callables
+from oracle_exceptions import check_exceptions, check_refused_code
 from oracle_files import Probe
+from oracle_hit_objects import USING_TRAVERSE_DATA, check_hit_objects, mode_of
 from oracle_payload import check_payload32
 
 
@@ -26,6 +29,15 @@ def check_of(probe: Probe) -> Check | None:
     """The check for a probe, None where there is none."""
     if "rows" in probe.data:
         return Check(("payload of 32 words",), check_payload32)
+    if "states" in probe.data:
+        more = ("traverse data",) if mode_of(probe) == USING_TRAVERSE_DATA else ()
+        return Check(("hit objects", *more), check_hit_objects)
+    if "exceptionFlags" in probe.data:
+        return Check(("exceptions",), check_exceptions)
+    if probe.name.startswith("exception_code_out_of_range"):
+        return Check(("exceptions",), check_refused_code)
+    if probe.group.startswith("10_callables") and "log" in probe.data:
+        return Check(("callables",), check_callables)
     return None
 
 

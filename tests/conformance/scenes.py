@@ -6,7 +6,6 @@ from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
-
 from harness import Harness
 from oracle_compare import unlawful
 from oracle_events import RayResult, record

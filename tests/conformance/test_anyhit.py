@@ -4,10 +4,9 @@ from __future__ import annotations
 
 import itertools
 
+import brute_force
 import numpy as np
 import pytest
-
-import brute_force
 from harness import Harness
 from scenes import (
     CORNER,

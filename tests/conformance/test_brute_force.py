@@ -5,10 +5,9 @@ from __future__ import annotations
 import math
 from typing import Any
 
-import pytest
-
 import brute_force
 import oracle_files
+import pytest
 from oracle_differences import not_copied
 from oracle_files import Probe, number
 
@@ -30,9 +29,9 @@ PROBES = [probe for probe in oracle_files.probes() if _covered(probe)]
 
 def _beyond_binary32(given: dict[str, Any]) -> bool:
     """Whether a ray's numbers leave what binary32 can compute with, or are undefined."""
-    values = [number(given[key]) for key in ("tmin", "tmax", "time")] + oracle_files.numbers(given["o"]) + oracle_files.numbers(given["d"])
-    length = math.hypot(*oracle_files.numbers(given["d"]))
-    return any(math.isnan(value) for value in values) or not 1e-20 < length < 1e20 or max(abs(x) for x in oracle_files.numbers(given["o"])) > 1e6
+    origin, direction = oracle_files.numbers(given["o"]), oracle_files.numbers(given["d"])
+    values = [number(given[key]) for key in ("tmin", "tmax", "time")] + origin + direction
+    return any(math.isnan(value) for value in values) or not 1e-20 < math.hypot(*direction) < 1e20 or max(map(abs, origin)) > 1e6
 
 
 @pytest.mark.parametrize("probe", PROBES, ids=lambda probe: probe.id)
@@ -44,8 +43,9 @@ def test_recorded_hits_are_found(probe: Probe) -> None:
         hits = [hit for hit in brute_force.scene_candidates(probe.scene, given) if brute_force.visible(hit, given["flags"])]
         recorded = [event for event in ray["events"] if event["ev"] in HIT_EVENTS]
         for event in recorded:
-            assert any(hit.primitive == event["prim"] and hit.hit_kind == event["hitKind"]
-                       and math.isclose(hit.t, number(event["tmax"]), rel_tol=T_RELATIVE, abs_tol=T_RELATIVE) for hit in hits), (given, event)
+            t = number(event["tmax"])
+            assert any((hit.primitive, hit.hit_kind) == (event["prim"], event["hitKind"])
+                       and math.isclose(hit.t, t, rel_tol=T_RELATIVE, abs_tol=T_RELATIVE) for hit in hits), (given, event)
         missed = any(event["ev"] == "MS" for event in ray["events"])
         if missed and not recorded:
             assert not hits, given

@@ -5,11 +5,11 @@ from __future__ import annotations
 import math
 
 import numpy as np
-import optixc as ox
 import pytest
-
 from harness import Harness
 from scenes import boxes, calls, closest, gas, hitgroup, ias, instance, kinds, missed, ray, reported, trace
+
+import optixc as ox
 
 UNIT = [[0.0, 0.0, -0.5, 1.0, 1.0, 0.5]]
 ABOVE = (0.25, 0.25, 5.0)

@@ -5,9 +5,7 @@ from __future__ import annotations
 import math
 
 import numpy as np
-import optixc as ox
 import pytest
-
 from harness import Harness
 from scenes import (
     CORNER,
@@ -26,6 +24,8 @@ from scenes import (
     translation,
     triangles,
 )
+
+import optixc as ox
 
 ABOVE = (0.25, 0.25, 1.0)
 NO_INSTANCE = 0xFFFFFFFF

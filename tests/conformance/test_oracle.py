@@ -9,11 +9,9 @@ from __future__ import annotations
 
 from collections import Counter
 
-import optixc as ox
-import pytest
-
 import oracle_files
 import oracle_special
+import pytest
 from harness import Harness
 from oracle_compare import unlawful
 from oracle_differences import REASONS, Known, compare, not_copied
@@ -21,6 +19,8 @@ from oracle_events import record
 from oracle_features import FEATURES, missing, needed
 from oracle_files import Probe
 from oracle_scene import build
+
+import optixc as ox
 
 PROBES = oracle_files.probes()
 TRACED = [probe for probe in PROBES if probe.scene and probe.rays]
@@ -39,7 +39,8 @@ def test_the_recorded_files_are_there() -> None:
         print(f"no recorded results in {oracle_files.folder()}: 0 probes run, all skipped")
         pytest.skip(f"no recorded results in {oracle_files.folder()}")
     unsupported = Counter(name for probe in TRACED for name in missing(probe)[:1])
-    print(f"{len(PROBES)} probes in {oracle_files.folder()}; skipped for a missing feature: {sum(unsupported.values())} {dict(unsupported)}")
+    print(f"{len(PROBES)} probes in {oracle_files.folder()}")
+    print(f"skipped for a missing feature: {sum(unsupported.values())} {dict(unsupported)}")
     unknown = {name for probe in TRACED for name in needed(probe)} - set(FEATURES)
     assert not unknown, f"features that the table does not know: {unknown}"
 
@@ -67,7 +68,8 @@ def test_traced_probe(harness: Harness, known: Known, probe: Probe) -> None:
     for index, result in enumerate(results):
         differences, unexplained = compare(probe, index, result, known)
         names.update(differences)
-        found.extend(f"ray {index} {probe.rays[index]['in'].get('tag', '')}: {text}" for text in unlawful(probe, index, result) + unexplained)
+        where = f"ray {index} {probe.rays[index]['in'].get('tag', '')}"
+        found.extend(f"{where}: {text}" for text in unlawful(probe, index, result) + unexplained)
     for name, count in names.items():
         print(f"{probe.id}: {count} of {len(results)} rays differ: {name} ({REASONS[name]})")
     assert not found, f"{len(found)} differences:\n" + "\n".join(found[:SHOWN])

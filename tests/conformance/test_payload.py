@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import numpy as np
-import optixc as ox
 import payload as shader
-
 from harness import Harness
 from scenes import boxes, gas, hitgroup, kinds, ray, trace
+
+import optixc as ox
 
 CORNERS = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0]], np.float32)
 BEFORE = [10, 11, 12, 13, 14, 15, 16, 17]

@@ -7,11 +7,11 @@ from typing import Any
 
 import launch as shader
 import numpy as np
-import optixc as ox
 import pytest
-
 from harness import Harness
 from scenes import CORNER, calls, closest, gas, hitgroup, ias, instance, offsets, ray, trace, translation, triangles
+
+import optixc as ox
 
 CORNERS = np.array(CORNER, np.float32)
 
@@ -101,7 +101,8 @@ def test_T087_T088_offsets_and_strides_of_the_trace(harness: Harness) -> None:
     for root, base in (("gas", 0), ("ias", 5)):
         for offset, stride in ((0, 1), (1, 2), (3, 0), (2, 15), (15, 1)):
             rays = [ray((2 * k + 0.25, 0.25, 1.0), root=root, sbt_offset=offset, sbt_stride=stride) for k in range(3)]
-            assert [closest(result)["rec"] for result in trace(harness, scene, rays, groups)] == [base + offset + k * stride for k in range(3)]
+            found = [closest(result)["rec"] for result in trace(harness, scene, rays, groups)]
+            assert found == [base + offset + k * stride for k in range(3)]
 
 
 @pytest.mark.parametrize(("offset", "stride", "record"), [(18, 1, 3), (16, 1, 1), (0, 17, 2), (0, 31, 16), (0, 255, 30), (0, 256, 0)])

@@ -4,11 +4,9 @@ from __future__ import annotations
 
 import math
 
-import numpy as np
-import optixc as ox
-import pytest
-
 import brute_force
+import numpy as np
+import pytest
 from harness import Harness
 from scenes import (
     CORNER,
@@ -25,6 +23,8 @@ from scenes import (
     translation,
     triangles,
 )
+
+import optixc as ox
 
 FRONT, BACK = 0xFE, 0xFF
 INVALID_VALUE = 7001
