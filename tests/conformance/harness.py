@@ -6,7 +6,6 @@ cannot do is found out by asking the API, never by looking at the machine.
 
 from __future__ import annotations
 
-import sys
 from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
@@ -14,7 +13,6 @@ from typing import Any
 import optixc as ox
 
 SHADERS = Path(__file__).parent / "shaders"
-sys.path.append(str(SHADERS))  # the structs of a shader file are classes of the Python module of that name
 
 MODES = {"scalar": 1, "simd8": 8, "simd16": 16, "interpreter": 1}
 HIT_PROGRAMS = {"tri": ("recorder.py", "triangle", None), "custom": ("recorder.py", "custom", "__intersection__custom"),

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from typing import Any
 
-import callables as shader
 import numpy as np
 from harness import Harness
 from oracle_compare import close
 from oracle_files import Probe
+from shaders import callables as shader
 
 import optixc as ox
 

@@ -10,10 +10,10 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-import recorder as layout
 from harness import Harness
 from oracle_files import Probe, number, numbers
 from oracle_scene import handle_of
+from shaders import recorder as layout
 
 import optixc as ox
 

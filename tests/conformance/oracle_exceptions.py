@@ -8,9 +8,9 @@ from typing import Any
 
 import numpy as np
 import pytest
-import throwing as shader
 from harness import Harness
 from oracle_files import Probe
+from shaders import throwing as shader
 
 import optixc as ox
 
@@ -55,8 +55,8 @@ def check_exceptions(harness: Harness, probe: Probe) -> None:
 def _run(harness: Harness, data: dict[str, Any], with_program: bool) -> tuple[list[list[int]], list[list[int]], list[list[int]]]:
     module, create, build = harness.module("throwing.py"), harness.context.program_group_create, harness.context.accel_build
     raygen, miss = create(raygen=module["__raygen__throw"]), create(miss=module["__miss__throw"])
-    triangle = create(closesthit=module["__closesthit__throw"], anyhit=module["__anyhit__throw"])
-    custom = create(closesthit=module["__closesthit__throw"], anyhit=module["__anyhit__throw"], intersection=module["__intersection__throw"])
+    hits = {"closesthit": module["__closesthit__throw"], "anyhit": module["__anyhit__throw"]}
+    triangle, custom = create(**hits), create(**hits, intersection=module["__intersection__throw"])
     callable_group = create(direct_callable=module["__direct_callable__throw"],
                             continuation_callable=module["__continuation_callable__throw"])
     exception = create(exception=module["__exception__throw"])

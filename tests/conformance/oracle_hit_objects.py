@@ -5,11 +5,11 @@ from __future__ import annotations
 import re
 from typing import Any
 
-import hit_objects as shader
 import numpy as np
 from harness import Harness
 from oracle_compare import close
 from oracle_files import Probe, numbers
+from shaders import hit_objects as shader
 
 import optixc as ox
 

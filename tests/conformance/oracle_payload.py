@@ -5,9 +5,9 @@ from __future__ import annotations
 import re
 
 import numpy as np
-import payload32
 from harness import Harness
 from oracle_files import Probe
+from shaders import payload32
 
 import optixc as ox
 

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import numpy as np
-import payload as shader
 from harness import Harness
 from scenes import boxes, gas, hitgroup, kinds, ray, trace
+from shaders import payload as shader
 
 import optixc as ox
 

@@ -5,11 +5,11 @@ from __future__ import annotations
 import threading
 from typing import Any
 
-import launch as shader
 import numpy as np
 import pytest
 from harness import Harness
 from scenes import CORNER, calls, closest, gas, hitgroup, ias, instance, offsets, ray, trace, translation, triangles
+from shaders import launch as shader
 
 import optixc as ox
 
