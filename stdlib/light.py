@@ -1,7 +1,6 @@
 """Lights: what a point receives, and how to draw a point of a light that has an extent.
 
-`to_light` is the unit direction from the shaded point. Shadows are the
-caller's.
+`to_light` is the unit direction from the shaded point. Shadows are the caller's.
 """
 
 import optixc as ox

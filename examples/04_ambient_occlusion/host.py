@@ -73,7 +73,7 @@ def render(scene: Scene, width: int, height: int, samples: int, occlusion_rays: 
     context = ox.DeviceContext()
     module = context.module_create(shader)
     raygen = context.program_group_create(raygen=module["__raygen__ambient_occlusion"])
-    nothing = context.program_group_create(miss=module["__miss__nothing"])
+    nothing = context.program_group_create(miss=None)
     clear = context.program_group_create(miss=module["__miss__open"])
     surface = context.program_group_create(closesthit=module["__closesthit__surface"])
     pipeline = context.pipeline_create([raygen, nothing, clear, surface], max_trace_depth=1)

@@ -103,8 +103,3 @@ def __closesthit__surface(surface: Surface):
 @ox.program
 def __miss__open(opening: Opening):
     opening.open = 1.0
-
-
-@ox.program
-def __miss__nothing(surface: Surface):
-    """The payload already says that nothing was hit."""

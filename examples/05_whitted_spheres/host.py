@@ -67,7 +67,7 @@ def render(width: int, height: int, samples: int, *, verbose: bool = False) -> n
     context = ox.DeviceContext()
     module = context.module_create(shader)
     raygen = context.program_group_create(raygen=module["__raygen__pinhole"])
-    misses = [context.program_group_create(miss=module[name]) for name in ("__miss__sky", "__miss__light")]
+    misses = [context.program_group_create(miss=module["__miss__sky"]), context.program_group_create(miss=None)]
     kinds = [
         ("__intersection__floor", "__closesthit__checker", "__anyhit__opaque"),
         ("__intersection__metal_ball", "__closesthit__metal", "__anyhit__opaque"),

@@ -333,8 +333,3 @@ def __anyhit__glass(shadow: Shadow, hit: SpherePoint, shell: GlassShell):
 def __miss__sky(ray: Radiance):
     up = ox.max(ox.normalize(ox.get_world_ray_direction()).y, 0.0)
     ray.color = ox.lerp(float3(0.75, 0.85, 0.95), float3(0.10, 0.25, 0.60), ox.sqrt(up))
-
-
-@ox.program
-def __miss__light(shadow: Shadow):
-    """Nothing more stands in the way: the light stays as it is."""

@@ -21,7 +21,7 @@ class Queries:
         context = ox.DeviceContext()
         module = context.module_create(shader)
         self.raygens = {name: context.program_group_create(raygen=module[f"__raygen__{name}"]) for name in ("probe", "sight", "move")}
-        missed = context.program_group_create(miss=module["__miss__missed"])
+        missed = context.program_group_create(miss=None)
         clear = context.program_group_create(miss=module["__miss__clear"])
         contact = context.program_group_create(closesthit=module["__closesthit__contact"])
         self.pipeline = context.pipeline_create([*self.raygens.values(), missed, clear, contact], max_trace_depth=1)

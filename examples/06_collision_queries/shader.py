@@ -129,8 +129,3 @@ def __closesthit__contact(contact: Contact):
 @ox.program
 def __miss__clear(sight: Sight):
     sight.clear = 1
-
-
-@ox.program
-def __miss__missed(contact: Contact):
-    """The payload already says that nothing was hit."""
