@@ -178,8 +178,8 @@ def _exists(node: dict[str, Any], time: float) -> bool:
     motion = node.get("motion")
     if motion is None or motion["numKeys"] < 2:
         return True
-    return not (motion["flags"] & START_VANISH and time < motion["timeBegin"]
-                or motion["flags"] & END_VANISH and time > motion["timeEnd"])
+    return not ((motion["flags"] & START_VANISH and time < motion["timeBegin"])
+                or (motion["flags"] & END_VANISH and time > motion["timeEnd"]))
 
 
 def key_at(motion: dict[str, Any], time: float) -> tuple[int, float]:

@@ -9,6 +9,7 @@ import json
 import math
 import re
 from collections import Counter
+from itertools import pairwise
 from typing import Any
 
 import brute_force
@@ -212,5 +213,5 @@ def _coincident(probe: Probe, given: dict[str, Any], events: list[dict[str, Any]
         places[round(number(event["tmax"]), 4)] += 1
     distances = sorted(hit.t for hit in brute_force.scene_candidates(probe.scene, given))
     return any(count > 1 for count in places.values()) or any(
-        math.isfinite(b) and close(a, b, SAME_PLACE) for a, b in zip(distances, distances[1:], strict=False))
+        math.isfinite(b) and close(a, b, SAME_PLACE) for a, b in pairwise(distances))
 

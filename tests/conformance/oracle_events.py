@@ -19,7 +19,7 @@ import optixc as ox
 
 EVENT_NAMES = {layout.EVENT_INTERSECTION: "IS", layout.EVENT_REPORT: "RP", layout.EVENT_ANYHIT: "AH", layout.EVENT_CLOSESTHIT: "CH",
                layout.EVENT_MISS: "MS"}
-MAX_EVENTS = 64
+USUAL_EVENTS = 12
 MAX_REPORTS = 4
 HIT_EVENTS = ("AH", "CH")
 PRIMITIVE_EVENTS = ("IS", "AH", "CH")
@@ -46,16 +46,17 @@ def record(harness: Harness, probe: Probe, scene: dict[str, Any]) -> list[RayRes
         hitgroup=[groups[hit["kind"], hit["ch"], hit["ah"]].record(_record(hit["data"])) for hit in probe.data["hitgroups"]])
     rays = _rays(probe, scene)
     count = len(rays)
-    words = np.zeros((count, MAX_EVENTS, layout.WORD_COUNT), np.uint32)
-    values = np.zeros((count, MAX_EVENTS, layout.NUMBER_COUNT), np.float32)
-    handles = np.zeros((count, MAX_EVENTS, layout.HANDLE_COUNT), np.uint64)
+    room = 2 * max(ray.get("nev", USUAL_EVENTS) for ray in probe.rays) + 8
+    words = np.zeros((count, room, layout.WORD_COUNT), np.uint32)
+    values = np.zeros((count, room, layout.NUMBER_COUNT), np.float32)
+    handles = np.zeros((count, room, layout.HANDLE_COUNT), np.uint64)
     outcomes = np.zeros(count, layout.Outcome.dtype)
     counts = np.zeros(count, np.uint32)
     params = layout.Params(rays=rays, outcomes=outcomes, counts=counts, words=words, numbers=values, handles=handles)
     harness.launch(pipeline, params, sbt, count)
     names = {handle_of(traversable): name for name, traversable in scene.items()}
     return [RayResult([int(outcomes[ray][f"word{i}"]) for i in range(4)], int(outcomes[ray]["returned"]), int(counts[ray]),
-                      [_event(words[ray, i], values[ray, i], handles[ray, i], names) for i in range(min(int(counts[ray]), MAX_EVENTS))])
+                      [_event(words[ray, i], values[ray, i], handles[ray, i], names) for i in range(min(int(counts[ray]), room))])
             for ray in range(count)]
 
 

@@ -62,7 +62,7 @@ def _update(harness: Harness) -> None:
 SPHERES = {"type": "spheres", "vertices": [[0, 0, 0]], "radii": [[1]], "flags": [0], "numSbtRecords": 1}
 MICROMAP = {**TRIANGLE, "omm": {"indexingMode": 1, "index": [], "indexSize": 4, "indexOffset": 0,
                                 "maps": [{"level": 0, "format": 1, "states": [1]}]}}
-HALF = {**TRIANGLE, "vertexFormat": "0x2124", "rawBytes": [0] * 18, "rawStride": 0}
+HALF = {**TRIANGLE, "vertexFormat": "0x2123", "rawBytes": [0] * 18, "rawStride": 0}
 FLOAT2 = {**TRIANGLE, "vertexFormat": "0x2122", "rawBytes": [0] * 24, "rawStride": 0}
 
 FEATURES: dict[str, Feature] = {
@@ -98,7 +98,7 @@ CURVE_FEATURES = {"0x2505": "ribbons", "0x2508": "rocaps curves", "0x2509": "roc
                   "0x250b": "rocaps curves"}
 INPUT_FEATURES = {"triangles": "triangles", "custom": "custom primitives", "spheres": "spheres", "curves": "curves"}
 NODE_FEATURES = {"static": "static transforms", "matrixMotion": "matrix motion", "srtMotion": "SRT motion", "IAS": "instances"}
-TWO_COMPONENTS = ("0x2122", "0x2123", "0x2125")
+TWO_COMPONENTS = ("0x2122", "0x2124", "0x2126")
 
 
 def needed(probe: Probe) -> list[str]:

@@ -15,7 +15,7 @@ from oracle_files import number, numbers
 import optixc as ox
 
 INDEX_TYPES = {1: np.uint8, 2: np.uint16, 4: np.uint32}
-FLOAT2, FLOAT3, HALF2, HALF3, SNORM16_2, SNORM16_3 = 0x2122, 0x2121, 0x2123, 0x2124, 0x2125, 0x2126
+FLOAT3, FLOAT2, HALF3, HALF2, SNORM16_3, SNORM16_2 = 0x2121, 0x2122, 0x2123, 0x2124, 0x2125, 0x2126
 RAW_COMPONENTS = {FLOAT2: (np.float32, 2), FLOAT3: (np.float32, 3), HALF2: (np.float16, 2), HALF3: (np.float16, 3),
                   SNORM16_2: (np.int16, 2), SNORM16_3: (np.int16, 3)}
 SRT_FLOATS, MATRIX_FLOATS = 16, 12

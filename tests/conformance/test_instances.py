@@ -154,7 +154,7 @@ def test_transforms_of_many_instances_agree_with_numpy(harness: Harness) -> None
     for matrix in matrices:
         full = np.array(matrix, np.float32).astype(np.float64).reshape(3, 4)
         target = full[:, :3] @ (0.25, 0.25, 0.0) + full[:, 3]
-        rays.append(ray((target + (0.1, 0.2, 2.0)).tolist(), (-0.1, -0.2, -2.0), root="ias"))
+        rays.append(ray((target + np.array((0.1, 0.2, 2.0))).tolist(), (-0.1, -0.2, -2.0), root="ias"))
     for index, result in enumerate(trace(harness, scene, rays)):
         hit = closest(result)
         assert hit["instId"] == hit["instIdx"] == index

@@ -244,9 +244,8 @@ def decide(record: Record, count: uint32, primitive: uint32, kind: uint32):
             ox.ignore_intersection()
         elif calls == record.anyhit_argument:
             ox.terminate_ray()
-    elif record.anyhit_mode == 7:
-        if kind & 1 != 0:
-            ox.ignore_intersection()
+    elif record.anyhit_mode == 7 and kind & 1 != 0:
+        ox.ignore_intersection()
 
 
 @ox.device
