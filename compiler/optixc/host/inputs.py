@@ -57,14 +57,14 @@ def take_array(value: Any, dtype: Any, shape: tuple[int | str, ...], where: str)
 
 
 def take_index_array(value: Any, shape: tuple[int | str, ...], where: str) -> np.ndarray[Any, Any]:
-    """Indices as uint32; int32 and uint16 are taken as well, negative ones refused."""
+    """Indices as uint32; int32, uint16 and uint8 are taken as well, negative ones refused."""
     if isinstance(value, np.ndarray) and value.dtype == np.int32:
         array = take_array(value, np.int32, shape, where)
         if array.size and int(array.min()) < 0:
             raise InvalidValueError(f"{where} holds the negative index {int(array.min())}")
         return array.view(np.uint32)
-    if isinstance(value, np.ndarray) and value.dtype == np.uint16:
-        return take_array(value, np.uint16, shape, where).astype(np.uint32)
+    if isinstance(value, np.ndarray) and value.dtype in (np.uint8, np.uint16):
+        return take_array(value, value.dtype, shape, where).astype(np.uint32)
     return take_array(value, np.uint32, shape, where)
 
 
@@ -151,14 +151,16 @@ class _Records:
             offsets = take_index_array(self.sbt_index_offsets, ("n",), f"{where}.sbt_index_offsets")
             if offsets.size != primitives:
                 raise InvalidValueError(f"{where}: {offsets.size} sbt_index_offsets for {primitives} primitives")
-            if offsets.size and int(offsets.max()) >= count:
-                raise InvalidValueError(f"{where}: an sbt_index_offset is {int(offsets.max())}, though there are {count} records")
+            # an offset past the last record means the last record, as in OptiX: the runtime clamps
             target.sbtIndexOffsets = _pointer(offsets, "uint32_t*", kept)
 
 
 @dataclass
 class BuildInputTriangles(_Records, BuildInput):
-    """Triangles: float32 vertices (n, 3), uint32 indices (m, 3) or None for vertices in threes; `pre_transform` 3x4 is baked in."""
+    """Triangles: float32 vertices (n, 3), uint32 indices (m, 3) or None for vertices in threes; `pre_transform` 3x4 is baked in.
+
+    One or two vertices left over by the threes are not used.
+    """
 
     vertices: Keys
     indices: Any = None
@@ -172,8 +174,6 @@ class BuildInputTriangles(_Records, BuildInput):
         target.vertices = _fill_keys(keys, kept)
         target.numVertices = len(keys[0])
         if self.indices is None:
-            if len(keys[0]) % 3:
-                raise InvalidValueError(f"BuildInputTriangles without indices takes vertices in threes, not {len(keys[0])}")
             primitives = len(keys[0]) // 3
         else:
             indices = take_index_array(self.indices, ("m", 3), "BuildInputTriangles.indices")
