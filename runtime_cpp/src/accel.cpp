@@ -11,9 +11,10 @@ namespace oxrt {
 
 namespace {
 
-constexpr std::uint32_t knownBuildFlags = OXRT_BUILD_FLAG_ALLOW_UPDATE | OXRT_BUILD_FLAG_ALLOW_COMPACTION | OXRT_BUILD_FLAG_PREFER_FAST_TRACE |
-                                          OXRT_BUILD_FLAG_PREFER_FAST_BUILD | OXRT_BUILD_FLAG_ALLOW_RANDOM_VERTEX_ACCESS |
-                                          OXRT_BUILD_FLAG_ALLOW_RANDOM_INSTANCE_ACCESS | OXRT_BUILD_FLAG_NOT_ROBUST;
+constexpr std::uint32_t knownBuildFlags = OXRT_BUILD_FLAG_ALLOW_UPDATE | OXRT_BUILD_FLAG_ALLOW_COMPACTION |
+                                          OXRT_BUILD_FLAG_PREFER_FAST_TRACE | OXRT_BUILD_FLAG_PREFER_FAST_BUILD |
+                                          OXRT_BUILD_FLAG_ALLOW_RANDOM_VERTEX_ACCESS | OXRT_BUILD_FLAG_ALLOW_RANDOM_INSTANCE_ACCESS |
+                                          OXRT_BUILD_FLAG_NOT_ROBUST;
 constexpr std::uint64_t maxPrimitivesPerGas = std::uint64_t(1) << 29;
 constexpr std::uint64_t maxRecordsPerGas = std::uint64_t(1) << 24;
 
@@ -37,17 +38,19 @@ void checkInputs(std::span<const OxrtBuildInput> inputs)
     std::uint64_t records = 0;
     for (unsigned i = 0; i < inputs.size(); ++i) {
         if (inputs[i].type != inputs[0].type)
-            fail(OXRT_ERROR_INVALID_VALUE, "input %u is of type 0x%x but input 0 of type 0x%x; make one accel per type and instance them", i,
-                 inputs[i].type, inputs[0].type);
+            fail(OXRT_ERROR_INVALID_VALUE, "input %u is of type 0x%x but input 0 of type 0x%x; make one accel per type and instance them",
+                 i, inputs[i].type, inputs[0].type);
         if (inputs[i].type == OXRT_BUILD_INPUT_INSTANCES) continue;
         Geometry::check(inputs[i], i);
         primitives += inputs[i].numPrimitives;
         records += inputs[i].numSbtRecords;
     }
     if (primitives > maxPrimitivesPerGas)
-        fail(OXRT_ERROR_INVALID_VALUE, "the inputs hold %llu primitives; a GAS holds at most 2^29", static_cast<unsigned long long>(primitives));
+        fail(OXRT_ERROR_INVALID_VALUE, "the inputs hold %llu primitives; a GAS holds at most 2^29",
+             static_cast<unsigned long long>(primitives));
     if (records > maxRecordsPerGas)
-        fail(OXRT_ERROR_INVALID_VALUE, "the inputs need %llu SBT records; a GAS has at most 2^24", static_cast<unsigned long long>(records));
+        fail(OXRT_ERROR_INVALID_VALUE, "the inputs need %llu SBT records; a GAS has at most 2^24",
+             static_cast<unsigned long long>(records));
     if (inputs[0].type == OXRT_BUILD_INPUT_INSTANCES && inputs.size() != 1)
         fail(OXRT_ERROR_INVALID_VALUE, "%zu inputs of instances; an IAS has exactly one, put all instances into it", inputs.size());
 }
@@ -55,7 +58,8 @@ void checkInputs(std::span<const OxrtBuildInput> inputs)
 std::span<const OxrtInstance> instancesOf(const OxrtBuildInput& input)
 {
     if (!input.instances && input.numPrimitives != 0)
-        fail(OXRT_ERROR_INVALID_VALUE, "input 0: instances is NULL but numPrimitives is %llu", static_cast<unsigned long long>(input.numPrimitives));
+        fail(OXRT_ERROR_INVALID_VALUE, "input 0: instances is NULL but numPrimitives is %llu",
+             static_cast<unsigned long long>(input.numPrimitives));
     return {input.instances, input.numPrimitives};
 }
 
@@ -72,7 +76,8 @@ std::shared_ptr<Accel> Accel::make(std::shared_ptr<Context> context, const OxrtA
     return accel;
 }
 
-Accel::Accel(std::shared_ptr<Context> owner, std::uint32_t flags) : context(std::move(owner)), buildFlags(flags) {}
+Accel::Accel(std::shared_ptr<Context> owner, std::uint32_t flags) : context(std::move(owner)), buildFlags(flags)
+{}
 
 Accel::~Accel()
 {
@@ -171,26 +176,27 @@ void Accel::checkSameShape(std::span<const OxrtBuildInput> inputs) const
         return;
     }
     if (inputs.size() != geometries.size())
-        fail(OXRT_ERROR_INVALID_VALUE, "an update keeps the shape of the build, which had %zu inputs, not %zu", geometries.size(), inputs.size());
+        fail(OXRT_ERROR_INVALID_VALUE, "an update keeps the shape of the build, which had %zu inputs, not %zu", geometries.size(),
+             inputs.size());
     for (unsigned i = 0; i < inputs.size(); ++i) {
         const OxrtBuildInput& input = inputs[i];
         const OxrtGeometry& built = geometries[i]->geometry();
-        const std::uint64_t vertexCount = input.numPrimitives == 0                            ? 0
+        const std::uint64_t vertexCount = input.numPrimitives == 0                           ? 0
                                           : input.type == OXRT_BUILD_INPUT_CUSTOM_PRIMITIVES ? input.numPrimitives
                                                                                              : input.numVertices;
-        if (input.type != geometries[i]->buildInputType() || input.numPrimitives != built.primitiveCount || vertexCount != built.vertexCount ||
-            input.numSbtRecords != built.recordCount || std::max(1u, input.numKeys) != built.keyCount ||
+        if (input.type != geometries[i]->buildInputType() || input.numPrimitives != built.primitiveCount ||
+            vertexCount != built.vertexCount || input.numSbtRecords != built.recordCount || std::max(1u, input.numKeys) != built.keyCount ||
             input.primitiveIndexOffset != built.primitiveIndexOffset)
             fail(OXRT_ERROR_INVALID_VALUE,
-                 "input %u: an update keeps type, primitive, vertex, record and key counts of the build (%u primitives, %llu vertices, %u records)",
+                 "input %u: an update keeps type, primitive, vertex, record and key counts of the build (%u primitives, %llu vertices, %u "
+                 "records)",
                  i, built.primitiveCount, static_cast<unsigned long long>(built.vertexCount), built.recordCount);
     }
 }
 
 void Accel::update(std::span<const OxrtBuildInput> inputs)
 {
-    if (!updatable())
-        fail(OXRT_ERROR_INVALID_VALUE, "the accel was built without ALLOW_UPDATE; build it with that flag to update it");
+    if (!updatable()) fail(OXRT_ERROR_INVALID_VALUE, "the accel was built without ALLOW_UPDATE; build it with that flag to update it");
     checkInputs(inputs);
     checkSameShape(inputs);
 

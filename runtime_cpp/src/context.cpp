@@ -25,7 +25,8 @@ constexpr std::uint32_t maxTextures = 1u << 20;
 
 unsigned chooseThreads(unsigned wanted)
 {
-    if (wanted > maxThreads) fail(OXRT_ERROR_INVALID_VALUE, "threads is %u; give 0 (all that the process may use) to %u", wanted, maxThreads);
+    if (wanted > maxThreads)
+        fail(OXRT_ERROR_INVALID_VALUE, "threads is %u; give 0 (all that the process may use) to %u", wanted, maxThreads);
     return wanted != 0 ? wanted : usableThreads();
 }
 
@@ -153,7 +154,8 @@ void Context::endLaunch(std::uint64_t ticket)
     const std::lock_guard lock(launchMutex);
     activeTickets.erase(ticket);
     const std::uint64_t oldest = activeTickets.empty() ? lastTicket + 1 : *activeTickets.begin();
-    const auto firstFree = std::partition(retired.begin(), retired.end(), [oldest](const Retired& entry) { return entry.ticket >= oldest; });
+    const auto firstFree =
+        std::partition(retired.begin(), retired.end(), [oldest](const Retired& entry) { return entry.ticket >= oldest; });
     std::move(firstFree, retired.end(), std::back_inserter(free));
     retired.erase(firstFree, retired.end());
 }

@@ -69,8 +69,7 @@ unsigned readVersion(void* handle, const char* name)
     const auto newDevice = reinterpret_cast<decltype(&::rtcNewDevice)>(dlsym(handle, "rtcNewDevice"));
     const auto releaseDevice = reinterpret_cast<decltype(&::rtcReleaseDevice)>(dlsym(handle, "rtcReleaseDevice"));
     const auto getProperty = reinterpret_cast<decltype(&::rtcGetDeviceProperty)>(dlsym(handle, "rtcGetDeviceProperty"));
-    if (!newDevice || !releaseDevice || !getProperty)
-        fail(OXRT_ERROR_LIBRARY_NOT_FOUND, "%s is not an Embree 4 library; %s", name, remedy);
+    if (!newDevice || !releaseDevice || !getProperty) fail(OXRT_ERROR_LIBRARY_NOT_FOUND, "%s is not an Embree 4 library; %s", name, remedy);
 
     const RTCDevice device = newDevice(nullptr);
     if (!device) fail(OXRT_ERROR_LIBRARY_NOT_FOUND, "Embree in %s cannot make a device on this machine; %s", name, remedy);
@@ -81,8 +80,8 @@ unsigned readVersion(void* handle, const char* name)
 
 void resolveFunctions(void* handle, EmbreeLibrary& library)
 {
-#define OXRT_EMBREE_RESOLVE(name)                                                                                                         \
-    library.name = reinterpret_cast<decltype(&::name)>(dlsym(handle, #name));                                                             \
+#define OXRT_EMBREE_RESOLVE(name)                                                                                                          \
+    library.name = reinterpret_cast<decltype(&::name)>(dlsym(handle, #name));                                                              \
     if (!library.name) fail(OXRT_ERROR_LIBRARY_NOT_FOUND, "Embree in %s lacks %s; %s", library.path.c_str(), #name, remedy);
     OXRT_EMBREE_FUNCTIONS(OXRT_EMBREE_RESOLVE)
 #undef OXRT_EMBREE_RESOLVE
@@ -101,7 +100,8 @@ void checkProperties(const EmbreeLibrary& library, RTCDevice device)
     };
     for (const auto& [property, option] : needed)
         if (!library.rtcGetDeviceProperty(device, property))
-            fail(OXRT_ERROR_LIBRARY_NOT_FOUND, "Embree in %s was built without %s, which is needed; %s", library.path.c_str(), option, remedy);
+            fail(OXRT_ERROR_LIBRARY_NOT_FOUND, "Embree in %s was built without %s, which is needed; %s", library.path.c_str(), option,
+                 remedy);
 }
 
 // One instanced triangle, hit once: with other instance levels or without instance arrays the ids land elsewhere.
@@ -168,7 +168,7 @@ EmbreeLibrary load(const char* embreePath)
     resolveFunctions(handle, library);
 
     const std::unique_ptr<RTCDeviceTy, decltype(library.rtcReleaseDevice)> device(library.rtcNewDevice("threads=1"),
-                                                                                 library.rtcReleaseDevice);
+                                                                                  library.rtcReleaseDevice);
     checkProperties(library, device.get());
     checkHitLayout(library, device.get());
     library.backfaceCulling = library.rtcGetDeviceProperty(device.get(), RTC_DEVICE_PROPERTY_BACKFACE_CULLING_ENABLED) != 0;

@@ -42,8 +42,8 @@ inline void futexWait(std::atomic<std::uint32_t>& word, std::uint32_t expected, 
         limit.tv_sec = static_cast<std::time_t>(timeout.count() / 1'000'000'000);
         limit.tv_nsec = static_cast<long>(timeout.count() % 1'000'000'000);
     }
-    syscall(SYS_futex, reinterpret_cast<std::uint32_t*>(&word), FUTEX_WAIT_PRIVATE, expected, timeout.count() >= 0 ? &limit : nullptr, nullptr,
-            0);
+    syscall(SYS_futex, reinterpret_cast<std::uint32_t*>(&word), FUTEX_WAIT_PRIVATE, expected, timeout.count() >= 0 ? &limit : nullptr,
+            nullptr, 0);
 }
 
 inline void futexWake(std::atomic<std::uint32_t>& word, int count)

@@ -24,7 +24,8 @@ void checkRecords(const OxrtBuildInput& input, unsigned number)
         fail(OXRT_ERROR_INVALID_VALUE, "input %u: numSbtRecords is %u; give 1 to %u", number, input.numSbtRecords, maxRecords);
     for (std::uint32_t i = 0; input.flags && i < input.numSbtRecords; ++i)
         if (input.flags[i] & ~knownGeometryFlags)
-            fail(OXRT_ERROR_INVALID_VALUE, "input %u: flags[%u] is 0x%x, which has unknown bits; combine GeometryFlags", number, i, input.flags[i]);
+            fail(OXRT_ERROR_INVALID_VALUE, "input %u: flags[%u] is 0x%x, which has unknown bits; combine GeometryFlags", number, i,
+                 input.flags[i]);
     if (input.numSbtRecords > 1 && !input.sbtIndexOffsets && input.numPrimitives != 0)
         fail(OXRT_ERROR_INVALID_VALUE, "input %u: numSbtRecords is %u but sbtIndexOffsets is NULL; give one offset per primitive", number,
              input.numSbtRecords);
@@ -45,8 +46,9 @@ void checkCounts(const OxrtBuildInput& input, unsigned number)
 // One array per motion key.
 void checkKeys(const float* const* keys, const OxrtBuildInput& input, unsigned number, const char* name)
 {
-    if (!keys) fail(OXRT_ERROR_INVALID_VALUE, "input %u: %s is NULL but numPrimitives is %llu", number, name,
-                    static_cast<unsigned long long>(input.numPrimitives));
+    if (!keys)
+        fail(OXRT_ERROR_INVALID_VALUE, "input %u: %s is NULL but numPrimitives is %llu", number, name,
+             static_cast<unsigned long long>(input.numPrimitives));
     for (std::uint32_t key = 0; key < std::max(1u, input.numKeys); ++key)
         if (!keys[key]) fail(OXRT_ERROR_INVALID_VALUE, "input %u: %s[%u] is NULL", number, name, key);
 }
@@ -68,10 +70,8 @@ void checkTriangles(const OxrtBuildInput& input, unsigned number)
              triangles * 3, available);
     for (std::uint64_t i = 0; input.indices && i < input.numPrimitives * 3; ++i)
         if (input.indices[i] >= input.numVertices)
-            fail(OXRT_ERROR_INVALID_VALUE, "input %u: index %u of triangle %llu is %lld, but there are %llu vertices", number,
-                 static_cast<unsigned>(i % 3), static_cast<unsigned long long>(i / 3),
-                 static_cast<long long>(static_cast<std::int32_t>(input.indices[i]) < 0 ? static_cast<std::int32_t>(input.indices[i])
-                                                                                     : input.indices[i]),
+            fail(OXRT_ERROR_INVALID_VALUE, "input %u: index %u of triangle %llu is %u (%d if signed), but there are %llu vertices", number,
+                 static_cast<unsigned>(i % 3), static_cast<unsigned long long>(i / 3), input.indices[i], static_cast<int>(input.indices[i]),
                  available);
 }
 
@@ -82,7 +82,8 @@ void transformPoints(const float* matrix, float* points, std::uint64_t count)
         const float x = p[0];
         const float y = p[1];
         const float z = p[2];
-        for (int row = 0; row < 3; ++row) p[row] = matrix[4 * row] * x + matrix[4 * row + 1] * y + matrix[4 * row + 2] * z + matrix[4 * row + 3];
+        for (int row = 0; row < 3; ++row)
+            p[row] = matrix[4 * row] * x + matrix[4 * row + 1] * y + matrix[4 * row + 2] * z + matrix[4 * row + 3];
     }
 }
 
@@ -104,8 +105,10 @@ void boxBounds(const RTCBoundsFunctionArguments* arguments)
 }
 
 // Runs where a pipeline without intersection programs meets custom primitives: nothing is hit.
-void intersectNothing(const RTCIntersectFunctionNArguments*) {}
-void occludeNothing(const RTCOccludedFunctionNArguments*) {}
+void intersectNothing(const RTCIntersectFunctionNArguments*)
+{}
+void occludeNothing(const RTCOccludedFunctionNArguments*)
+{}
 
 } // namespace
 
@@ -123,8 +126,8 @@ void Geometry::check(const OxrtBuildInput& input, unsigned number)
         if (input.numPrimitives != 0) checkKeys(input.aabbs, input, number, "aabbs");
         break;
     default:
-        fail(OXRT_ERROR_INVALID_VALUE, "input %u: type is 0x%x, which is no geometry; give OXRT_BUILD_INPUT_TRIANGLES or _CUSTOM_PRIMITIVES",
-             number, input.type);
+        fail(OXRT_ERROR_INVALID_VALUE,
+             "input %u: type is 0x%x, which is no geometry; give OXRT_BUILD_INPUT_TRIANGLES or _CUSTOM_PRIMITIVES", number, input.type);
     }
 }
 

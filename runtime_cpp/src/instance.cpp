@@ -32,7 +32,8 @@ void checkInstance(const OxrtInstance& instance, std::size_t number)
     if (instance.sbtOffset >= idLimit)
         fail(OXRT_ERROR_INVALID_VALUE, "instance %llu: sbtOffset %u does not fit 28 bits", printable(number), instance.sbtOffset);
     if (instance.visibilityMask > fullMask)
-        fail(OXRT_ERROR_INVALID_VALUE, "instance %llu: visibilityMask 0x%x does not fit 8 bits", printable(number), instance.visibilityMask);
+        fail(OXRT_ERROR_INVALID_VALUE, "instance %llu: visibilityMask 0x%x does not fit 8 bits", printable(number),
+             instance.visibilityMask);
 }
 
 // In double precision; false where no finite inverse exists.
@@ -68,7 +69,8 @@ bool invert(const float (&matrix)[12], float (&inverse)[12])
 
 Instances::Instances(const Context& context, std::span<const OxrtInstance> instances)
 {
-    if (instances.size() > maxInstances) fail(OXRT_ERROR_INVALID_VALUE, "%llu instances; an IAS holds at most 2^28", printable(instances.size()));
+    if (instances.size() > maxInstances)
+        fail(OXRT_ERROR_INVALID_VALUE, "%llu instances; an IAS holds at most 2^28", printable(instances.size()));
     for (std::size_t i = 0; i < instances.size(); ++i) checkInstance(instances[i], i);
 
     views = Array<OxrtInstanceView>(instances.size());

@@ -32,7 +32,8 @@ std::uint32_t powerOfTwoUpTo(std::uint32_t value, std::uint32_t limit)
 
 } // namespace
 
-Launch::Launch(std::uint32_t paramsSize) : paramsCopy(paramsSize) {}
+Launch::Launch(std::uint32_t paramsSize) : paramsCopy(paramsSize)
+{}
 
 void Launch::prepare(const Context& context, const OxrtLaunch& launch, const OxrtProgram& raygen, const void* params)
 {

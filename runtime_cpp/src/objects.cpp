@@ -56,7 +56,7 @@ Objects& objects()
 }
 
 template <class Object>
-const void* insert(Table<Object> Objects::*table, std::shared_ptr<Object> object)
+const void* insert(Table<Object> Objects::* table, std::shared_ptr<Object> object)
 {
     const std::lock_guard lock(objects().mutex);
     const void* key = object.get();
@@ -65,7 +65,7 @@ const void* insert(Table<Object> Objects::*table, std::shared_ptr<Object> object
 }
 
 template <class Object>
-std::shared_ptr<Object> lookUp(Table<Object> Objects::*table, const void* key, OxrtResult result, const char* name)
+std::shared_ptr<Object> lookUp(Table<Object> Objects::* table, const void* key, OxrtResult result, const char* name)
 {
     if (!key) fail(result, "the %s is NULL", name);
     const std::lock_guard lock(objects().mutex);
@@ -75,7 +75,7 @@ std::shared_ptr<Object> lookUp(Table<Object> Objects::*table, const void* key, O
 }
 
 template <class Object>
-std::shared_ptr<Object> erase(Table<Object> Objects::*table, const void* key, OxrtResult result, const char* name)
+std::shared_ptr<Object> erase(Table<Object> Objects::* table, const void* key, OxrtResult result, const char* name)
 {
     std::shared_ptr<Object> object = lookUp(table, key, result, name);
     const std::lock_guard lock(objects().mutex);

@@ -84,13 +84,14 @@ std::int32_t Pipeline::findProgram(const char* name) const
     return OXRT_NO_PROGRAM;
 }
 
-const OxrtProgram& Pipeline::checkLaunch(const void* params, std::size_t paramsSize, const OxrtShaderBindingTable* sbt, LaunchSize size) const
+const OxrtProgram& Pipeline::checkLaunch(const void* params, std::size_t paramsSize, const OxrtShaderBindingTable* sbt,
+                                         LaunchSize size) const
 {
     // An absent variable ignores what is passed, as in OptiX.
     if (binary->paramsSize != 0 && !params) fail(OXRT_ERROR_INVALID_VALUE, "params is NULL, but the pipeline has launch parameters");
     if (binary->paramsSize != 0 && paramsSize != binary->paramsSize)
-        fail(OXRT_ERROR_INVALID_VALUE, "paramsSize is %zu, but the pipeline's launch parameters have %u bytes; pass the same struct", paramsSize,
-             binary->paramsSize);
+        fail(OXRT_ERROR_INVALID_VALUE, "paramsSize is %zu, but the pipeline's launch parameters have %u bytes; pass the same struct",
+             paramsSize, binary->paramsSize);
     if (!sbt) fail(OXRT_ERROR_INVALID_VALUE, "sbt is NULL");
     if (size.width == 0 || size.height == 0 || size.depth == 0)
         fail(OXRT_ERROR_INVALID_VALUE, "the launch size %u x %u x %u has a zero; use 1 for unused dimensions", size.width, size.height,

@@ -68,8 +68,8 @@ private:
     std::unique_ptr<Launch> launch;
     mutable std::mutex mutex;
     std::condition_variable idle;
-    bool active = false;   // between begin and the wait that saw the end
-    bool begun = false;    // offered to the pool
+    bool active = false; // between begin and the wait that saw the end
+    bool begun = false;  // offered to the pool
     std::uint64_t ticket = 0;
     OxrtLaunchReport failedReport = {};
 };

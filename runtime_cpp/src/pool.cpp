@@ -20,7 +20,8 @@ constexpr std::size_t workerStackSize = std::size_t(16) << 20; // nested traces 
 
 } // namespace
 
-Pool::Pool(unsigned threads) : threadCount(threads) {}
+Pool::Pool(unsigned threads) : threadCount(threads)
+{}
 
 Pool::~Pool()
 {

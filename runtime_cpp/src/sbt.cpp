@@ -36,19 +36,18 @@ OxrtRecordHeader readHeader(const void* record)
 void checkSection(const Section& section)
 {
     if (section.count == 0) return;
-    if (!section.base)
-        fail(OXRT_ERROR_INVALID_VALUE, "the SBT has %u %s records but their pointer is NULL", section.count, section.name);
+    if (!section.base) fail(OXRT_ERROR_INVALID_VALUE, "the SBT has %u %s records but their pointer is NULL", section.count, section.name);
     if (!aligned(section.base)) fail(OXRT_ERROR_INVALID_VALUE, "the SBT's %s records are not aligned to 16 bytes", section.name);
     if (section.stride % OXRT_SBT_RECORD_ALIGNMENT != 0 || section.stride < OXRT_SBT_RECORD_HEADER_SIZE)
-        fail(OXRT_ERROR_INVALID_VALUE, "the SBT's %s stride is %u; give a multiple of 16 of at least 32 bytes", section.name, section.stride);
+        fail(OXRT_ERROR_INVALID_VALUE, "the SBT's %s stride is %u; give a multiple of 16 of at least 32 bytes", section.name,
+             section.stride);
 }
 
 // Throws `result` for a header that no program group of this pipeline wrote.
 void checkHeader(const void* record, std::uint32_t kind, std::uint32_t pipelineUid, const std::string& name, OxrtResult result)
 {
     const OxrtRecordHeader header = readHeader(record);
-    if (header.pipelineUid == 0)
-        fail(result, "the SBT's %s is empty; write its header with oxrtSbtRecordPackHeader", name.c_str());
+    if (header.pipelineUid == 0) fail(result, "the SBT's %s is empty; write its header with oxrtSbtRecordPackHeader", name.c_str());
     if (header.pipelineUid != pipelineUid)
         fail(result, "the SBT's %s was written for another pipeline (%u, this is %u); write its header for this one", name.c_str(),
              header.pipelineUid, pipelineUid);
@@ -98,8 +97,8 @@ std::int32_t Pipeline::groupProgram(const char* name, std::uint32_t kind, const 
     if (!name) return OXRT_NO_PROGRAM;
     const std::int32_t number = findProgram(name);
     if (number == OXRT_NO_PROGRAM)
-        fail(OXRT_ERROR_INVALID_VALUE, "program group: %s names `%s`, which is not in this pipeline; add it when the pipeline is made", member,
-             name);
+        fail(OXRT_ERROR_INVALID_VALUE, "program group: %s names `%s`, which is not in this pipeline; add it when the pipeline is made",
+             member, name);
     const OxrtProgram& program = variant->programs[number];
     if (program.kind != kind)
         fail(OXRT_ERROR_INVALID_VALUE, "program group: %s names `%s`, which is a %s program", member, name, programKindName(program.kind));
@@ -123,9 +122,7 @@ void Pipeline::packHeader(const OxrtProgramGroupDesc& group, std::uint32_t dataS
         if (!group.raygen) fail(OXRT_ERROR_INVALID_VALUE, "program group: a raygen group needs `raygen`");
         header.programs[0] = groupProgram(group.raygen, OXRT_KIND_RAYGEN, "raygen", dataSize);
         break;
-    case OXRT_PROGRAM_GROUP_KIND_MISS:
-        header.programs[0] = groupProgram(group.miss, OXRT_KIND_MISS, "miss", dataSize);
-        break;
+    case OXRT_PROGRAM_GROUP_KIND_MISS: header.programs[0] = groupProgram(group.miss, OXRT_KIND_MISS, "miss", dataSize); break;
     case OXRT_PROGRAM_GROUP_KIND_EXCEPTION:
         if (!group.exception) fail(OXRT_ERROR_INVALID_VALUE, "program group: an exception group needs `exception`");
         header.programs[0] = groupProgram(group.exception, OXRT_KIND_EXCEPTION, "exception", dataSize);
@@ -141,8 +138,7 @@ void Pipeline::packHeader(const OxrtProgramGroupDesc& group, std::uint32_t dataS
         header.programs[0] = groupProgram(group.directCallable, OXRT_KIND_DIRECT_CALLABLE, "directCallable", dataSize);
         header.programs[1] = groupProgram(group.continuationCallable, OXRT_KIND_CONTINUATION_CALLABLE, "continuationCallable", dataSize);
         break;
-    default:
-        fail(OXRT_ERROR_INVALID_VALUE, "program group: kind 0x%x is unknown", static_cast<unsigned>(group.kind));
+    default: fail(OXRT_ERROR_INVALID_VALUE, "program group: kind 0x%x is unknown", static_cast<unsigned>(group.kind));
     }
     std::memcpy(record, &header, sizeof header);
 }

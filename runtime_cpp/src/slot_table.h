@@ -96,7 +96,8 @@ private:
 
     bool grow()
     {
-        if (committed == capacity) fail(OXRT_ERROR_INVALID_OPERATION, "all %u handles of this context are in use; destroy some objects", capacity);
+        if (committed == capacity)
+            fail(OXRT_ERROR_INVALID_OPERATION, "all %u handles of this context are in use; destroy some objects", capacity);
         const std::uint32_t next = capacity - committed < slotsPerStep ? capacity : committed + slotsPerStep;
         if (mprotect(slots, bytes(next), PROT_READ | PROT_WRITE) != 0) throw std::bad_alloc();
         committed = next;

@@ -22,7 +22,8 @@ void checkTexture(const OxrtTextureOptions& options)
     if (!options.texels) fail(OXRT_ERROR_INVALID_VALUE, "texture: texels is NULL");
     if (options.width == 0 || options.height == 0 || options.width > maxSide || options.height > maxSide)
         fail(OXRT_ERROR_INVALID_VALUE, "texture: the size is %u x %u; give 1 to %u on each side", options.width, options.height, maxSide);
-    if (options.channels == 0 || options.channels > 4) fail(OXRT_ERROR_INVALID_VALUE, "texture: %u channels; give 1 to 4", options.channels);
+    if (options.channels == 0 || options.channels > 4)
+        fail(OXRT_ERROR_INVALID_VALUE, "texture: %u channels; give 1 to 4", options.channels);
     if (options.format > OXRT_TEXTURE_UINT8) fail(OXRT_ERROR_INVALID_VALUE, "texture: format %u is unknown", options.format);
     if (options.filter > OXRT_FILTER_LINEAR) fail(OXRT_ERROR_INVALID_VALUE, "texture: filter %u is unknown", options.filter);
     if (options.wrapU > OXRT_WRAP_BORDER || options.wrapV > OXRT_WRAP_BORDER)
@@ -37,9 +38,9 @@ std::shared_ptr<const OxrtTextureView> makeTexture(const OxrtTextureOptions& opt
     checkTexture(options);
     const std::size_t texelSize = options.channels * (options.format == OXRT_TEXTURE_FLOAT32 ? sizeof(float) : 1);
     auto texture = std::make_shared<Texture>();
-    texture->texels = Array<std::uint8_t>(static_cast<const std::uint8_t*>(options.texels),
-                                          std::size_t(options.width) * options.height * texelSize);
-    texture->view = {texture->texels.data(), options.width,  options.height, options.channels, options.format,
+    texture->texels =
+        Array<std::uint8_t>(static_cast<const std::uint8_t*>(options.texels), std::size_t(options.width) * options.height * texelSize);
+    texture->view = {texture->texels.data(), options.width, options.height, options.channels, options.format,
                      options.filter,         options.wrapU, options.wrapV,  options.srgb};
     return {texture, &texture->view};
 }
