@@ -6,9 +6,11 @@ from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
+import pytest
 from harness import Harness
 from oracle_compare import unlawful
 from oracle_events import RayResult, record
+from oracle_features import FEATURES
 from oracle_files import Probe
 from oracle_scene import build
 
@@ -78,12 +80,13 @@ def reported(t: float, kind: int = 1, per_primitive: float = 0.0, attributes: Se
 
 
 def trace(harness: Harness, scene: Sequence[dict[str, Any]], rays: Sequence[dict[str, Any]],
-          hitgroups: Sequence[dict[str, Any]] = (), misses: int = 1) -> list[RayResult]:
-    """What the recorder saw for each ray; each log is checked to be a lawful run of the programs."""
-    probe = Probe("here", {"name": "scene", "pipeline": {"usesMotionBlur": False, "omm": False}, "scene": list(scene), "rays": list(rays),
-                           "hitgroups": list(hitgroups) or [hitgroup()],
+          hitgroups: Sequence[dict[str, Any]] = (), misses: int = 1, motion: bool = False, micromaps: bool = False,
+          made: dict[str, Any] | None = None) -> list[RayResult]:
+    """What the recorder saw for each ray; each log is checked to be a lawful run of the programs. `made`: a scene built already."""
+    probe = Probe("here", {"name": "scene", "pipeline": {"usesMotionBlur": motion, "omm": micromaps}, "scene": list(scene),
+                           "rays": list(rays), "hitgroups": list(hitgroups) or [hitgroup()],
                            "miss": [{"id": index, "ahMode": 0, "ahArg": 0} for index in range(misses)]})
-    results = record(harness, probe, build(harness.context, probe.scene))
+    results = record(harness, probe, build(harness.context, probe.scene) if made is None else made)
     for index, result in enumerate(results):
         assert unlawful(probe, index, result) == [], (index, rays[index])
     return results
@@ -109,3 +112,10 @@ def closest(result: RayResult) -> dict[str, Any]:
 def missed(result: RayResult) -> bool:
     """Whether the miss program ran and nothing else did at the end."""
     return bool(calls(result, "MS")) and not calls(result, "CH")
+
+
+def require(*names: str) -> None:
+    """Skip the test where a feature is not there yet, by the one table of features."""
+    absent = [name for name in names if not FEATURES[name].supported]
+    if absent:
+        pytest.skip(f"needs {', '.join(absent)}")
