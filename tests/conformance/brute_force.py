@@ -187,7 +187,7 @@ def key_at(motion: dict[str, Any], time: float) -> tuple[int, float]:
     intervals = motion["numKeys"] - 1
     begin, end = float(motion["timeBegin"]), float(motion["timeEnd"])
     position = min(max(intervals * (time - begin) / (end - begin), 0.0), float(intervals))
-    key = min(int(math.floor(position)), intervals - 1)
+    key = min(math.floor(position), intervals - 1)
     return key, position - key
 
 

@@ -59,6 +59,13 @@ def _update(harness: Harness) -> None:
     accel.update([ox.BuildInputTriangles(corners + 1)])
 
 
+def _compaction(harness: Harness) -> None:
+    corners = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0]], np.float32)
+    accel = harness.context.accel_build([ox.BuildInputTriangles(corners)], build_flags=ox.BuildFlags.ALLOW_COMPACTION)
+    if accel.compact().handle == accel.handle:
+        raise NotImplementedError("compaction gives the same structure")
+
+
 SPHERES = {"type": "spheres", "vertices": [[0, 0, 0]], "radii": [[1]], "flags": [0], "numSbtRecords": 1}
 MICROMAP = {**TRIANGLE, "omm": {"indexingMode": 1, "index": [], "indexSize": 4, "indexOffset": 0,
                                 "maps": [{"level": 0, "format": 1, "states": [1]}]}}
@@ -70,6 +77,7 @@ FEATURES: dict[str, Feature] = {
     "custom primitives": Feature(True, _scene(_gas({"type": "custom", "aabbs": [[0, 0, 0, 1, 1, 1]], "flags": [0], "numSbtRecords": 1}))),
     "instances": Feature(True, _scene(_gas(TRIANGLE), _ias("gas"))),
     "updates": Feature(True, _update),
+    "compaction": Feature(False, _compaction),
     "spheres": Feature(False, _scene(_gas(SPHERES))),
     "curves": Feature(False, _scene(_gas(_curve("0x2503")))),
     "rocaps curves": Feature(False, _scene(_gas(_curve("0x2508")))),
