@@ -52,6 +52,8 @@ template <> struct Lanes<bool, 16> {
     /* Bit i is lane i. */
     static OXRT_INLINE constexpr Lanes ofBits(uint32_t bits) { return ofNative(uint16_t(bits)); }
     OXRT_INLINE constexpr uint32_t bits() const { return m; }
+    OXRT_INLINE constexpr bool operator[](int lane) const { return m >> lane & 1; }
+    OXRT_INLINE constexpr void set(int lane, bool value) { m = uint16_t((m & ~(1u << lane)) | uint32_t(value) << lane); }
     friend OXRT_INLINE Lanes operator&(Lanes a, Lanes b) { return ofNative(uint16_t(a.m & b.m)); }
     friend OXRT_INLINE Lanes operator|(Lanes a, Lanes b) { return ofNative(uint16_t(a.m | b.m)); }
     friend OXRT_INLINE Lanes operator^(Lanes a, Lanes b) { return ofNative(uint16_t(a.m ^ b.m)); }
@@ -73,6 +75,8 @@ template <> struct Lanes<bool, 8> {
         return ofNative(((NativeInt8{} + int32_t(bits)) & bit) == bit);
     }
     OXRT_INLINE uint32_t bits() const { return uint32_t(__builtin_ia32_movmskps256(NativeFloat8(m))); }
+    OXRT_INLINE bool operator[](int lane) const { return m[lane] != 0; }
+    OXRT_INLINE void set(int lane, bool value) { m[lane] = -int32_t(value); }
     friend OXRT_INLINE Lanes operator&(Lanes a, Lanes b) { return ofNative(a.m & b.m); }
     friend OXRT_INLINE Lanes operator|(Lanes a, Lanes b) { return ofNative(a.m | b.m); }
     friend OXRT_INLINE Lanes operator^(Lanes a, Lanes b) { return ofNative(a.m ^ b.m); }

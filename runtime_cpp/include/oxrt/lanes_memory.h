@@ -1,0 +1,201 @@
+/* Loads and stores whose address is another one in every lane.
+ *
+ * Lanes that the mask leaves out touch no memory and read zero. Words of 4 and 8 bytes are gathered; smaller numbers are read lane by
+ * lane.
+ */
+#ifndef OXRT_LANES_MEMORY_H
+#define OXRT_LANES_MEMORY_H
+
+#include <oxrt/lanes_types.h>
+
+namespace oxrt {
+inline namespace OXRT_ISA {
+
+/* ---- places: an address per lane ---------------------------------------------------------------------------------------------- */
+
+/* base + 4 * index bytes: for memory of less than 8 GiB from one base. */
+template <int W> struct WordPlaces {
+    const char* base;
+    Lanes<int32_t, W> index;
+    OXRT_INLINE const char* address(int lane) const { return base + 4 * int64_t(index[lane]); }
+};
+
+/* Any addresses. */
+template <int W> struct AddressPlaces {
+    Lanes<uint64_t, W> addresses;
+    OXRT_INLINE const char* address(int lane) const { return reinterpret_cast<const char*>(addresses[lane]); }
+};
+
+/* T at `offset` bytes behind every place, lane by lane. */
+template <class T, int W, class Places>
+OXRT_INLINE Wide<T, W> gatherSlowly(const Places& places, int64_t offset, Lanes<bool, W> mask) {
+    using E = ElementOf<Wide<T, W>>;
+    if constexpr (isSame<E, bool>) {
+        uint32_t bits = 0;
+        eachLane(mask, [&](int lane) { bits |= uint32_t(places.address(lane)[offset] != 0) << lane; });
+        return Lanes<bool, W>::ofBits(bits);
+    } else {
+        E values[W] = {};
+        eachLane(mask, [&](int lane) {
+            T value;
+            __builtin_memcpy(&value, places.address(lane) + offset, sizeof(T));
+            values[lane] = E(value);
+        });
+        return loadLanes<E, W>(values);
+    }
+}
+
+template <class T> using Word32Of = typename ChooseType<isFloating<T>, float, int32_t>::Type;
+
+template <class T, int W> OXRT_INLINE Lanes<T, W> gatherNumber(const WordPlaces<W>& places, int64_t offset, Lanes<bool, W> mask) {
+    using G = Word32Of<T>;
+    return bitCast<T>(Lanes<G, W>(gatherNative<4>(reinterpret_cast<const G*>(places.base + offset), places.index.v, mask.m)));
+}
+#ifdef OXRT_LANES_AVX512_H
+template <class T, int W> requires(W == 16)
+OXRT_INLINE Lanes<T, W> gatherNumber(const AddressPlaces<W>& places, int64_t offset, Lanes<bool, W> mask) {
+    const Lanes<uint64_t, W> at = places.addresses + uint64_t(offset);
+    const uint8_t low = lowMask(mask.m);
+    const uint8_t high = highMask(mask.m);
+    if constexpr (sizeof(T) == 4) {
+        using G = Word32Of<T>;
+        const G* kind = nullptr;
+        return bitCast<T>(Lanes<G, W>(join(gatherAddressNative(kind, at.v, low), gatherAddressNative(kind, at.w, high))));
+    } else {
+        using G = typename ChooseType<isFloating<T>, double, int64_t>::Type;
+        const G* kind = nullptr;
+        return bitCast<T>(Lanes<G, W>(gatherAddressNative(kind, at.v, low), gatherAddressNative(kind, at.w, high)));
+    }
+}
+#endif
+
+/* A number T, as its wide form, from every place. */
+template <class T, int W, class Places> OXRT_INLINE Wide<T, W> gather(const Places& places, int64_t offset, Lanes<bool, W> mask) {
+    if constexpr (isSame<T, typename WidenedNumber<T>::Type> && sizeof(T) >= 4 && requires { gatherNumber<T, W>(places, offset, mask); } &&
+                  !(isSame<Places, WordPlaces<W>> && sizeof(T) == 8))
+        return gatherNumber<T, W>(places, offset, mask);
+    else
+        return gatherSlowly<T, W>(places, offset, mask);
+}
+
+/* Four bytes in one word. */
+template <class T, int W, class Places>
+OXRT_INLINE Vector<Wide<T, W>, 4> gatherFourBytes(const Places& places, int64_t offset, Lanes<bool, W> mask) {
+    const Lanes<uint32_t, W> word = gather<uint32_t, W>(places, offset, mask);
+    Vector<Wide<T, W>, 4> result;
+    for (int i = 0; i < 4; ++i) {
+        const Lanes<uint32_t, W> top = word << uint32_t(24 - 8 * i);
+        if constexpr (isSigned<T>)
+            result[i] = bitCast<int32_t>(top) >> 24;
+        else
+            result[i] = top >> 24u;
+    }
+    return result;
+}
+
+/* The whole of a T from every place. `T` is the type in memory; each part of it is gathered from its own offset. */
+template <class T, int W, class Places> OXRT_INLINE Wide<T, W> loadFrom(const Places& places, Lanes<bool, W> mask) {
+    if constexpr (isSame<T, uchar4> || isSame<T, char4>)
+        return gatherFourBytes<decltype(T::x), W>(places, 0, mask);
+    else {
+        Wide<T, W> result;
+        T pattern; /* only the addresses of its parts are used */
+        eachPart([&](auto& to, auto& part) {
+            using Part = PlainType<decltype(part)>;
+            using Stored = typename ChooseType<Scalar<Part>, Part, uint64_t>::Type;
+            to = gather<Stored, W>(places, reinterpret_cast<const char*>(&part) - reinterpret_cast<const char*>(&pattern), mask);
+        }, result, pattern);
+        return result;
+    }
+}
+
+/* ---- array elements ----------------------------------------------------------------------------------------------------------- */
+
+template <class I> OXRT_INLINE auto wordIndex(I index) { return convert<int32_t>(index); }
+template <class I> OXRT_INLINE auto longIndex(I index) {
+    if constexpr (isSigned<ElementOf<I>>)
+        return convert<uint64_t>(convert<int64_t>(index));
+    else
+        return convert<uint64_t>(index);
+}
+
+/* Row-major number of the element, in wrapping 64-bit arithmetic. */
+template <int W, class Shape, class... I> OXRT_INLINE Lanes<uint64_t, W> longOffset(const Shape& shape, I... indices) {
+    Lanes<uint64_t, W> result = uint64_t(0);
+    int axis = 0;
+    ((result = axis == 0 ? Lanes<uint64_t, W>(longIndex(indices)) : result * Lanes<uint64_t, W>(shape[axis]) + longIndex(indices), ++axis), ...);
+    return result;
+}
+
+/* The lanes whose indices are inside of the array. */
+template <int W, class T, int RANK, class... I> OXRT_INLINE Lanes<bool, W> inside(const Array<T, RANK>& array, I... indices) {
+    int axis = 0;
+    return ((Lanes<uint64_t, W>(longIndex(indices)) < Lanes<uint64_t, W>(array.shape[axis++])) & ...);
+}
+template <int W, class A, class... I> OXRT_INLINE Lanes<bool, W> inside(const VaryingArray<A, W>& array, I... indices) {
+    int axis = 0;
+    return ((Lanes<uint64_t, W>(longIndex(indices)) < array.shape[axis++]) & ...);
+}
+
+/* Calls f with the places of the elements. */
+template <int W, class F, class T, int RANK, class... I> OXRT_INLINE auto withPlaces(F f, const Array<T, RANK>& array, I... indices) {
+    if constexpr (sizeof(T) % 4 == 0) {
+        uint64_t words = sizeof(T) / 4;
+        for (int axis = 0; axis < RANK; ++axis)
+            words *= array.shape[axis];
+        if (__builtin_expect(words < uint64_t(1) << 31, 1)) {
+            Lanes<int32_t, W> index = 0;
+            int axis = 0;
+            ((index = axis == 0 ? Lanes<int32_t, W>(wordIndex(indices)) : index * int32_t(array.shape[axis]) + wordIndex(indices), ++axis), ...);
+            return f(WordPlaces<W>{reinterpret_cast<const char*>(array.data), index * int32_t(sizeof(T) / 4)});
+        }
+    }
+    const Lanes<uint64_t, W> base = reinterpret_cast<uint64_t>(array.data);
+    return f(AddressPlaces<W>{base + longOffset<W>(array.shape, indices...) * uint64_t(sizeof(T))});
+}
+template <int W, class F, class T, int RANK, class... I>
+OXRT_INLINE auto withPlaces(F f, const VaryingArray<Array<T, RANK>, W>& array, I... indices) {
+    return f(AddressPlaces<W>{array.data + longOffset<W>(array.shape, indices...) * uint64_t(sizeof(T))});
+}
+
+template <class A> struct ArrayElement;
+template <class T, int RANK> struct ArrayElement<Array<T, RANK>> { using Type = T; };
+template <class A, int W> struct ArrayElement<VaryingArray<A, W>> : ArrayElement<A> {};
+
+/* array[indices] in the lanes of the mask, zero elsewhere. */
+template <int W, class A, class... I> OXRT_INLINE auto load(Lanes<bool, W> mask, const A& array, I... indices) {
+    using T = typename ArrayElement<A>::Type;
+    return withPlaces<W>([mask](auto places) { return loadFrom<T, W>(places, mask); }, array, indices...);
+}
+
+/* array[indices] = value in the lanes of the mask, lowest lane first. */
+template <int W, class A, class V, class... I> OXRT_INLINE void store(Lanes<bool, W> mask, const V& value, const A& array, I... indices) {
+    using T = typename ArrayElement<A>::Type;
+    const Wide<T, W> wide(value);
+    withPlaces<W>([&](auto places) {
+        eachLane(mask, [&](int lane) { extractLane(*reinterpret_cast<T*>(const_cast<char*>(places.address(lane))), wide, lane); });
+    }, array, indices...);
+}
+
+/* f(element, lane) for the elements of the active lanes, lowest lane first: atomic operations and stores to parts of elements. */
+template <int W, class F, class A, class... I> OXRT_INLINE void eachElement(Lanes<bool, W> mask, F f, const A& array, I... indices) {
+    using T = typename ArrayElement<A>::Type;
+    withPlaces<W>([&](auto places) {
+        eachLane(mask, [&](int lane) { f(*reinterpret_cast<T*>(const_cast<char*>(places.address(lane))), lane); });
+    }, array, indices...);
+}
+
+/* ---- fixed arrays, vectors and matrices by a varying index -------------------------------------------------------------------- */
+
+/* Item `index` of a fixed array, zero outside of it; component or row of a vector or matrix. */
+template <class T, int SIZE, class I, int W> OXRT_INLINE T loadItem(const FixedArray<T, SIZE>& array, Lanes<I, W> index) {
+    T result = spread<W>(T{});
+    for (int i = 0; i < SIZE; ++i)
+        assign(index == I(i), result, array.items[i]);
+    return result;
+}
+
+}  // namespace OXRT_ISA
+}  // namespace oxrt
+
+#endif

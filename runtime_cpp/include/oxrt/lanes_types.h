@@ -1,0 +1,157 @@
+/* Values of any device type, one per lane: which type holds them, assignment under a mask, single lanes in and out.
+ *
+ * `Wide<T, W>` is the type of W values of T: lanes of numbers (storage numbers widened to 32 bits), vectors, matrices, tuples and fixed
+ * arrays of wide values. Generated code specialises WideType for its structs, whose wide form has a static `each(f, structs...)` that
+ * calls f with the fields of all given structs side by side.
+ */
+#ifndef OXRT_LANES_TYPES_H
+#define OXRT_LANES_TYPES_H
+
+#include <oxrt/device_types.h>
+#include <oxrt/lanes.h>
+
+namespace oxrt {
+inline namespace OXRT_ISA {
+
+template <class T, int W> struct VaryingArray;
+
+template <class T, int W> struct WideType;
+template <class T, int W> using Wide = typename WideType<T, W>::Type;
+
+/* What arithmetic uses for a storage number. */
+template <class T> struct WidenedNumber { using Type = T; };
+template <> struct WidenedNumber<int8_t> { using Type = int32_t; };
+template <> struct WidenedNumber<int16_t> { using Type = int32_t; };
+template <> struct WidenedNumber<uint8_t> { using Type = uint32_t; };
+template <> struct WidenedNumber<uint16_t> { using Type = uint32_t; };
+template <> struct WidenedNumber<half> { using Type = float; };
+
+template <Scalar T, int W> struct WideType<T, W> { using Type = Lanes<typename WidenedNumber<T>::Type, W>; };
+template <class T, int N, int W> struct WideType<Vector<T, N>, W> { using Type = Vector<Wide<T, W>, N>; };
+template <class T, int R, int C, int W> struct WideType<Matrix<T, R, C>, W> { using Type = Matrix<Wide<T, W>, R, C>; };
+template <class T, int SIZE, int W> struct WideType<FixedArray<T, SIZE>, W> { using Type = FixedArray<Wide<T, W>, SIZE>; };
+template <class T, int RANK, int W> struct WideType<Array<T, RANK>, W> { using Type = VaryingArray<Array<T, RANK>, W>; };
+template <class... T, int W> struct WideType<Tuple<T...>, W> { using Type = Tuple<Wide<T, W>...>; };
+template <class T, int W> struct WideType<Word<T>, W> { using Type = Wide<T, W>; };
+
+/* Arrays that may be another one in every lane. */
+template <class T, int RANK, int W> struct VaryingArray<Array<T, RANK>, W> {
+    static constexpr bool isWideStruct = true;
+    Lanes<uint64_t, W> data;
+    Lanes<uint64_t, W> shape[RANK];
+    template <class F, class... S> static OXRT_INLINE void each(const F& f, S&... arrays) {
+        f(arrays.data...);
+        for (int axis = 0; axis < RANK; ++axis)
+            f(arrays.shape[axis]...);
+    }
+};
+
+template <class T> struct PlainTypeOf { using Type = T; };
+template <class T> struct PlainTypeOf<T&> { using Type = T; };
+template <class T> using PlainType = typename PlainTypeOf<T>::Type;
+
+/* A struct that generated code made wide, or a varying array. */
+template <class T> concept WideStruct = requires { T::isWideStruct; };
+template <class T> inline constexpr bool isTuple = false;
+template <class... T> inline constexpr bool isTuple<Tuple<T...>> = true;
+template <class T> inline constexpr bool isMatrix = false;
+template <class T, int R, int C> inline constexpr bool isMatrix<Matrix<T, R, C>> = true;
+template <class T> inline constexpr int fixedArraySize = 0;
+template <class T, int SIZE> inline constexpr int fixedArraySize<FixedArray<T, SIZE>> = SIZE;
+template <class T> inline constexpr bool isWord = false;
+template <class T> inline constexpr bool isWord<Word<T>> = true;
+template <class T> struct WordContent;
+template <class T> struct WordContent<Word<T>> { using Type = T; };
+
+/* f(parts...) for the numbers that wide values are made of, in order; the further arguments have the same shape, wide or not. */
+template <class F, class First, class... Rest> OXRT_INLINE void eachPart(const F& f, First& first, Rest&... rest);
+
+/* The second argument is words of a payload: its content takes part, and is put back. */
+template <class F, class First, class T> OXRT_INLINE void eachPartOfWord(const F& f, First& first, Word<T>& word) {
+    T content = word;
+    eachPart(f, first, content);
+    word = Word<T>(content);
+}
+
+template <class F, class First, class... Rest> OXRT_INLINE void eachPart(const F& f, First& first, Rest&... rest) {
+    if constexpr ((isWord<Rest> || ...))
+        eachPartOfWord(f, first, rest...);
+    else if constexpr (IsVector<First>) {
+        for (int i = 0; i < vectorSize<First>; ++i)
+            eachPart(f, first[i], rest[i]...);
+    } else if constexpr (isMatrix<First>) {
+        for (int i = 0; i < int(sizeof(first.rows) / sizeof(first.rows[0])); ++i)
+            eachPart(f, first.rows[i], rest.rows[i]...);
+    } else if constexpr (fixedArraySize<First> > 0) {
+        for (int i = 0; i < fixedArraySize<First>; ++i)
+            eachPart(f, first.items[i], rest.items[i]...);
+    } else if constexpr (isSame<First, Tuple<>>) {
+    } else if constexpr (isTuple<First>) {
+        eachPart(f, first.first, rest.first...);
+        eachPart(f, first.rest, rest.rest...);
+    } else if constexpr (WideStruct<First>)
+        First::each([&f](auto&... fields) __attribute__((always_inline)) { eachPart(f, fields...); }, first, rest...);
+    else
+        f(first, rest...);
+}
+
+/* ---- assignment and choice under a mask --------------------------------------------------------------------------------------- */
+
+/* target = value in the lanes of the mask; a value that all lanes share is spread. */
+template <int W, class T> OXRT_INLINE void assign(Lanes<bool, W> mask, T& target, const T& value) {
+    T copy = value;
+    eachPart([mask](auto& to, auto& from) { to = select(mask, from, to); }, target, copy);
+}
+template <int W, class T, class U> requires(!isSame<T, U>) OXRT_INLINE void assign(Lanes<bool, W> mask, T& target, const U& value) {
+    assign(mask, target, T(value));
+}
+
+template <int W, class T> requires(!Number<T> && vectorSize<T> == 0) OXRT_INLINE T select(Lanes<bool, W> mask, T ifTrue, T ifFalse) {
+    assign(mask, ifFalse, ifTrue);
+    return ifFalse;
+}
+
+/* ---- single lanes ------------------------------------------------------------------------------------------------------------- */
+
+/* What a lane holds of a part whose own type is T: storage numbers are narrowed, pointers are held as addresses. */
+template <class T, class U> OXRT_INLINE void setPart(T& part, U value) {
+    if constexpr (Scalar<T>)
+        part = T(value);
+    else
+        part = reinterpret_cast<T>(value);
+}
+template <class T> OXRT_INLINE auto partOf(const T& part) {
+    if constexpr (Scalar<T>)
+        return part;
+    else
+        return reinterpret_cast<uint64_t>(part);
+}
+
+/* `target`, of the type that V is the wide form of, becomes the value in one lane. */
+template <class T, class V> OXRT_INLINE void extractLane(T& target, const V& value, int lane) {
+    V copy = value;
+    eachPart([lane](auto& from, auto& to) { setPart(to, from[lane]); }, copy, target);
+}
+template <class T, class V> OXRT_INLINE void insertLane(V& target, const T& value, int lane) {
+    T copy = value;
+    eachPart([lane](auto& to, auto& from) { to.set(lane, partOf(from)); }, target, copy);
+}
+
+/* The value in all lanes. */
+template <int W, class T> OXRT_INLINE Wide<T, W> spread(const T& value) {
+    Wide<T, W> result;
+    T copy = value;
+    eachPart([](auto& to, auto& from) { to = ElementOf<PlainType<decltype(to)>>(partOf(from)); }, result, copy);
+    return result;
+}
+
+/* f(lane) for every lane of the mask, lowest first. */
+template <int W, class F> OXRT_INLINE void eachLane(Lanes<bool, W> mask, F f) {
+    for (uint32_t bits = mask.bits(); bits != 0; bits &= bits - 1)
+        f(__builtin_ctz(bits));
+}
+
+}  // namespace OXRT_ISA
+}  // namespace oxrt
+
+#endif
