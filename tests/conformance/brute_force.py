@@ -94,14 +94,14 @@ def scene_boxes(scene: list[dict[str, Any]], given: dict[str, Any]) -> list[Box]
     return found
 
 
-def passes_edge(scene: list[dict[str, Any]], given: dict[str, Any]) -> bool:
-    """Whether the ray goes exactly through an edge or vertex of some triangle."""
+def passes_edge(scene: list[dict[str, Any]], given: dict[str, Any], tolerance: float = EDGE) -> bool:
+    """Whether the ray goes through an edge or vertex of some triangle, within a barycentric tolerance."""
     for item, _, ray, _ in _leaves(scene, given):
         if item["type"] == "triangles":
             with np.errstate(all="ignore"):
                 u, v, _, _ = _barycentrics(_corners(item), ray)
                 least = np.minimum(np.minimum(u, v), 1.0 - u - v)
-            if bool(np.any(np.abs(least) < EDGE)):
+            if bool(np.any(np.abs(least) < tolerance)):
                 return True
     return False
 

@@ -15,7 +15,7 @@ import optixc as ox
 MAX_ROWS = 64
 RAYGEN_ID, K = 99, 0.5
 # by the results: record 1's k is 0.5, record 5 adds and multiplies 3
-CALLABLES = (("add", None, 1, 0.0), ("struct", None, 2, K), ("nested", None, 3, 0.0), ("traverse", None, 4, 0.0),
+CALLABLES = (("add", None, 1, 0.0), ("vector", None, 2, K), ("nested", None, 3, 0.0), ("traverse", None, 4, 0.0),
              (None, "trace", 5, 0.0), ("both", "both", 6, 3.0))
 TRIANGLE_RECORD, CUSTOM_RECORD, HIT_RECORDS, MISS_RECORDS = 6, 7, 8, 3
 
@@ -44,7 +44,7 @@ def _run(harness: Harness) -> list[dict[str, Any]]:
     corners, bounds = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0]], np.float32), np.array([[0, 0, 0, 1, 1, 1]], np.float32)
     gas, box = build([ox.BuildInputTriangles(corners)]), build([ox.BuildInputCustomPrimitives(bounds)])
     log, values = np.zeros((MAX_ROWS, shader.LOG_WORDS), np.uint32), np.zeros((MAX_ROWS, shader.LOG_NUMBERS), np.float32)
-    count, side = np.zeros(1, np.uint32), np.zeros(1, np.uint32)
+    count, side = np.zeros(1, np.uint32), np.zeros(2, np.uint32)
     params = shader.Params(log=log, log_numbers=values, log_count=count, side=side, scene=gas.handle, boxes=box.handle)
     hits = [simple.record() for _ in range(HIT_RECORDS)]
     hits[TRIANGLE_RECORD] = triangle.record(shader.Record(TRIANGLE_RECORD, 0.0))

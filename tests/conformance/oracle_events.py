@@ -49,14 +49,14 @@ def record(harness: Harness, probe: Probe, scene: dict[str, Any]) -> list[RayRes
     room = 2 * max(ray.get("nev", USUAL_EVENTS) for ray in probe.rays) + 8
     words = np.zeros((count, room, layout.WORD_COUNT), np.uint32)
     values = np.zeros((count, room, layout.NUMBER_COUNT), np.float32)
-    handles = np.zeros((count, room, layout.HANDLE_COUNT), np.uint64)
+    handles = np.zeros((count, room, layout.HANDLE_COUNT), layout.Handle.dtype)
     outcomes = np.zeros(count, layout.Outcome.dtype)
     counts = np.zeros(count, np.uint32)
     params = layout.Params(rays=rays, outcomes=outcomes, counts=counts, words=words, numbers=values, handles=handles)
     harness.launch(pipeline, params, sbt, count)
     names = {handle_of(traversable): name for name, traversable in scene.items()}
     return [RayResult([int(outcomes[ray][f"word{i}"]) for i in range(4)], int(outcomes[ray]["returned"]), int(counts[ray]),
-                      [_event(words[ray, i], values[ray, i], handles[ray, i], names) for i in range(min(int(counts[ray]), room))])
+                      [_event(words[ray, i], values[ray, i], handles[ray, i]["value"], names) for i in range(min(int(counts[ray]), room))])
             for ray in range(count)]
 
 

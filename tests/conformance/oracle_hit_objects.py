@@ -65,7 +65,7 @@ def _run(harness: Harness, mode: int) -> tuple[list[dict[str, Any]], list[dict[s
     boxes = build([ox.BuildInputInstances([ox.Instance(box, eye, instance_id=BOX_INSTANCE_ID)])])
     states, state_numbers = np.zeros((MAX_ROWS, shader.STATE_WORDS), np.uint32), np.zeros((MAX_ROWS, shader.STATE_NUMBERS), np.float32)
     log, log_numbers = np.zeros((MAX_ROWS, shader.LOG_WORDS), np.uint32), np.zeros((MAX_ROWS, shader.LOG_NUMBERS), np.float32)
-    state_gas, counts = np.zeros(MAX_ROWS, np.uint64), np.zeros((2, 1), np.uint32)
+    state_gas, counts = np.zeros(MAX_ROWS, shader.Handle.dtype), np.zeros((2, 1), np.uint32)
     params = shader.Params(states=states, state_numbers=state_numbers, state_gas=state_gas, state_count=counts[0], log=log,
                            log_numbers=log_numbers, log_count=counts[1], scene=top.handle, boxes=boxes.handle, mode=mode)
     sbt = ox.ShaderBindingTable(
@@ -74,7 +74,7 @@ def _run(harness: Harness, mode: int) -> tuple[list[dict[str, Any]], list[dict[s
                   for index, record_mode in enumerate(RECORD_MODES)])
     harness.launch(pipeline, params, sbt, 1)
     names = {gas.handle: "gas", box.handle: "box", 0: "0x0"}
-    return ([_state(states[row], state_numbers[row], names[int(state_gas[row])]) for row in range(int(counts[0, 0]))],
+    return ([_state(states[row], state_numbers[row], names[int(state_gas[row]["value"])]) for row in range(int(counts[0, 0]))],
             [_log(log[row], log_numbers[row]) for row in range(int(counts[1, 0]))])
 
 

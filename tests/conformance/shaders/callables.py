@@ -1,14 +1,15 @@
 """Callables from every kind of program: the programs of the recorded callables probe.
 
-A row of params.log is: what, record, primitive or record after the calls, four payload words, eight results. OptiX hands a pointer to a
-caller's local to a callable; without pointers the callable writes to memory of the launch instead.
+A row of params.log is: what, record, primitive or record after the calls, four payload words, eight results. The recorded callable takes a
+struct and a pointer to a caller's local; here a callable's struct parameter is its record, so the values come one by one and the side
+effects go to memory of the launch.
 """
 
 import optixc as ox
-from optixc import Array, Array2, FixedArray, Traversable, float3, uint32
+from optixc import Array, Array2, Traversable, float3, float4, uint32
 
-LOG_WORDS, LOG_NUMBERS = 15, 9
-Four = FixedArray[float, 4]
+LOG_WORDS = 15
+LOG_NUMBERS = 9
 
 
 @ox.struct
@@ -25,12 +26,6 @@ class Params:
 class Record:
     id: uint32
     k: float
-
-
-@ox.struct
-class Argument:
-    a: Four
-    i: int
 
 
 @ox.payload
@@ -72,13 +67,10 @@ def __direct_callable__add(a: int, b: int, record: Record) -> int:
 
 
 @ox.program
-def __direct_callable__struct(x: Argument, s: float, record: Record) -> Argument:
-    y = Argument(Four(), 0)
-    for i in range(4):
-        y.a[i] = x.a[i] * s + record.k
-    y.i = x.i + int(record.id)
+def __direct_callable__vector(x: float4, i: int, s: float, record: Record) -> float4:
     params.side[0] = 4242
-    return y
+    params.side[1] = uint32(i + int(record.id))
+    return x * s + float4(record.k)
 
 
 @ox.program
@@ -123,14 +115,13 @@ def call_all(what: uint32, before: uint32) -> uint32:
     n = new_row(what)
     params.log[n, 1] = before
     params.log[n, 7] = uint32(ox.direct_call(0, 3, 4, result=int))
-    x = Argument(Four(), 7)
-    for i in range(4):
-        x.a[i] = float(i + 1)
     params.side[0] = 0
-    y = ox.direct_call(1, x, 2.0, result=Argument)
-    for i in range(4):
-        params.log_numbers[n, i] = y.a[i]
-    params.log[n, 8] = uint32(y.i)
+    y = ox.direct_call(1, float4(1.0, 2.0, 3.0, 4.0), 7, 2.0, result=float4)
+    params.log_numbers[n, 0] = y.x
+    params.log_numbers[n, 1] = y.y
+    params.log_numbers[n, 2] = y.z
+    params.log_numbers[n, 3] = y.w
+    params.log[n, 8] = params.side[1]
     params.log[n, 9] = params.side[0]
     params.log[n, 10] = uint32(ox.direct_call(2, 3, result=int))
     return n

@@ -4,17 +4,29 @@ params.states holds one row for each look at the outgoing hit object, params.log
 """
 
 import optixc as ox
-from optixc import Array, Array2, Traversable, float3, uint32, uint64
+from optixc import Array, Array2, Traversable, float3, uint32
 
-CLOSESTHIT, MISS, AFTER_TRAVERSE, AFTER_INVOKE, ANYHIT = 1, 2, 3, 4, 5
-STATE_WORDS, STATE_NUMBERS, LOG_WORDS, LOG_NUMBERS = 15, 32, 15, 10
+CLOSESTHIT = 1
+MISS = 2
+AFTER_TRAVERSE = 3
+AFTER_INVOKE = 4
+ANYHIT = 5
+STATE_WORDS = 15
+STATE_NUMBERS = 32
+LOG_WORDS = 15
+LOG_NUMBERS = 10
+
+
+@ox.struct
+class Handle:
+    value: Traversable
 
 
 @ox.struct
 class Params:
     states: Array2[uint32]
     state_numbers: Array2[float]
-    state_gas: Array[uint64]
+    state_gas: Array[Handle]
     state_count: Array[uint32]
     log: Array2[uint32]
     log_numbers: Array2[float]
@@ -75,7 +87,7 @@ def dump(tag: uint32):
     params.state_numbers[n, 7] = ox.hit_object_get_ray_tmax()
     params.state_numbers[n, 8] = ox.hit_object_get_ray_time()
     if ox.hit_object_is_hit():
-        params.state_gas[n] = uint64(ox.hit_object_get_gas_traversable_handle())
+        params.state_gas[n] = Handle(ox.hit_object_get_gas_traversable_handle())
         to_world = ox.hit_object_get_object_to_world_transform_matrix()
         for row in range(3):
             for column in range(4):

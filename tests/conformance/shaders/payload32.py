@@ -43,7 +43,7 @@ def put(tag: uint32, depth: uint32, words: Words):
 def __raygen__words():
     words = Words(Block())
     for i in range(WORDS):
-        words.w[i] = 1000 + i
+        words.w[i] = uint32(1000 + i)
     words.w[0] = 0
     x = 50.0 if params.mode == 1 else 0.25
     ox.trace(params.scene, float3(x, 0.25, 5.0), float3(0.0, 0.0, -1.0), tmin=0.5, tmax=100.0, ray_flags=params.ray_flags, payload=words)
@@ -64,7 +64,7 @@ def __closesthit__words(words: Words):
         put(3, depth, inner)
         put(4, depth, words)
     for i in range(0, WORDS, 2):
-        words.w[i] = 500000 + 100 * depth + i
+        words.w[i] = 500000 + 100 * depth + uint32(i)
 
 
 @ox.program

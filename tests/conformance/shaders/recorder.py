@@ -7,7 +7,7 @@ their own files, because a pipeline holds only what its scenes need.
 """
 
 import optixc as ox
-from optixc import Array, Array3, FixedArray, Traversable, float3, uint32, uint64
+from optixc import Array, Array3, FixedArray, Traversable, float3, uint32
 
 EVENT_INTERSECTION = 1
 EVENT_REPORT = 2
@@ -94,13 +94,18 @@ class Outcome:
 
 
 @ox.struct
+class Handle:
+    value: Traversable
+
+
+@ox.struct
 class Params:
     rays: Array[Ray]
     outcomes: Array[Outcome]
     counts: Array[uint32]
     words: Array3[uint32]
     numbers: Array3[float]
-    handles: Array3[uint64]
+    handles: Array3[Handle]
 
 
 @ox.struct
@@ -177,9 +182,9 @@ def put_primitive(ray: uint32, event: uint32):
     params.words[ray, event, TRANSFORM_COUNT] = count
     for i in range(min(count, uint32(8))):
         handle = ox.get_transform_list_handle(i)
-        params.handles[ray, event, TRANSFORM_HANDLES + i] = uint64(handle)
+        params.handles[ray, event, TRANSFORM_HANDLES + i] = Handle(handle)
         params.words[ray, event, TRANSFORM_TYPES + i] = uint32(ox.get_transform_type_from_handle(handle))
-    params.handles[ray, event, GAS_HANDLE] = uint64(ox.get_gas_traversable_handle())
+    params.handles[ray, event, GAS_HANDLE] = Handle(ox.get_gas_traversable_handle())
     to_world = ox.get_object_to_world_transform_matrix()
     to_object = ox.get_world_to_object_transform_matrix()
     for row in range(3):

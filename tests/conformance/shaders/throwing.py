@@ -8,7 +8,14 @@ passed its throw. Only launch index 1 throws.
 import optixc as ox
 from optixc import Array, Array2, Traversable, float3, uint32
 
-RAYGEN, CLOSESTHIT, MISS, ANYHIT, INTERSECTION, DIRECT, CONTINUATION, DEPTH = 1, 2, 3, 4, 5, 6, 7, 8
+RAYGEN = 1
+CLOSESTHIT = 2
+MISS = 3
+ANYHIT = 4
+INTERSECTION = 5
+DIRECT = 6
+CONTINUATION = 7
+DEPTH = 8
 EXCEPTION_WORDS = 13
 
 
