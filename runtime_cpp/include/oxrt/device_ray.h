@@ -66,14 +66,24 @@ struct Ray {
 
 /* ---- payload -------------------------------------------------------------------------------------------------------------------- */
 
-template <int INDEX> OXRT_INLINE uint32_t getPayload(const Ray& ray) {
+OXRT_INLINE uint32_t payloadWord(const Ray& ray, int index) {
     uint32_t word;
-    __builtin_memcpy(&word, static_cast<const char*>(ray.payload) + 4 * INDEX, 4);
+    __builtin_memcpy(&word, static_cast<const char*>(ray.payload) + 4 * index, 4);
     return word;
 }
-template <int INDEX> OXRT_INLINE void setPayload(Ray& ray, uint32_t word) {
-    __builtin_memcpy(static_cast<char*>(ray.payload) + 4 * INDEX, &word, 4);
+OXRT_INLINE void setPayloadWord(Ray& ray, int index, uint32_t word) {
+    __builtin_memcpy(static_cast<char*>(ray.payload) + 4 * index, &word, 4);
 }
+#define OXRT_PAYLOAD(i)                                                                        \
+    OXRT_INLINE uint32_t getPayload_##i(const Ray& ray) { return payloadWord(ray, i); }         \
+    OXRT_INLINE void setPayload_##i(Ray& ray, uint32_t word) { setPayloadWord(ray, i, word); }
+OXRT_PAYLOAD(0) OXRT_PAYLOAD(1) OXRT_PAYLOAD(2) OXRT_PAYLOAD(3) OXRT_PAYLOAD(4) OXRT_PAYLOAD(5) OXRT_PAYLOAD(6) OXRT_PAYLOAD(7)
+OXRT_PAYLOAD(8) OXRT_PAYLOAD(9) OXRT_PAYLOAD(10) OXRT_PAYLOAD(11) OXRT_PAYLOAD(12) OXRT_PAYLOAD(13) OXRT_PAYLOAD(14) OXRT_PAYLOAD(15)
+OXRT_PAYLOAD(16) OXRT_PAYLOAD(17) OXRT_PAYLOAD(18) OXRT_PAYLOAD(19) OXRT_PAYLOAD(20) OXRT_PAYLOAD(21) OXRT_PAYLOAD(22) OXRT_PAYLOAD(23)
+OXRT_PAYLOAD(24) OXRT_PAYLOAD(25) OXRT_PAYLOAD(26) OXRT_PAYLOAD(27) OXRT_PAYLOAD(28) OXRT_PAYLOAD(29) OXRT_PAYLOAD(30) OXRT_PAYLOAD(31)
+#undef OXRT_PAYLOAD
+/* Which payload types a program takes is settled when the pipeline is compiled. */
+OXRT_INLINE void setPayloadTypes(Ray&, uint32_t) {}
 
 /* ---- the ray -------------------------------------------------------------------------------------------------------------------- */
 
@@ -218,7 +228,14 @@ OXRT_INLINE uint32_t attributeWord(const Ray& ray, int index) {
         return ray.attributes[index];
     return index == 0 ? floatAsUint(ray.u) : index == 1 ? floatAsUint(ray.v) : 0;
 }
-template <int INDEX> OXRT_INLINE uint32_t getAttribute(const Ray& ray) { return attributeWord(ray, INDEX); }
+OXRT_INLINE uint32_t getAttribute_0(const Ray& ray) { return attributeWord(ray, 0); }
+OXRT_INLINE uint32_t getAttribute_1(const Ray& ray) { return attributeWord(ray, 1); }
+OXRT_INLINE uint32_t getAttribute_2(const Ray& ray) { return attributeWord(ray, 2); }
+OXRT_INLINE uint32_t getAttribute_3(const Ray& ray) { return attributeWord(ray, 3); }
+OXRT_INLINE uint32_t getAttribute_4(const Ray& ray) { return attributeWord(ray, 4); }
+OXRT_INLINE uint32_t getAttribute_5(const Ray& ray) { return attributeWord(ray, 5); }
+OXRT_INLINE uint32_t getAttribute_6(const Ray& ray) { return attributeWord(ray, 6); }
+OXRT_INLINE uint32_t getAttribute_7(const Ray& ray) { return attributeWord(ray, 7); }
 template <class Attributes> OXRT_INLINE Attributes getAttributes(const Ray& ray) {
     static_assert(sizeof(Attributes) <= sizeof(ray.attributes));
     uint32_t words[8];

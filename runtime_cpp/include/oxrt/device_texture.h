@@ -55,7 +55,7 @@ static inline float4 readTexel(const OxrtTextureView& texture, int32_t x, int32_
 }
 
 /* The filtered colour at (u, v); zero for a handle that names no texture. */
-static inline float4 tex2D(const OxrtThread& thread, uint64_t handle, float u, float v) {
+static inline float4 tex2d(const OxrtThread& thread, uint64_t handle, float u, float v) {
     const OxrtTextureView* texture = findTexture(*thread.launch, handle);
     if (!texture)
         return {0.0f, 0.0f, 0.0f, 0.0f};

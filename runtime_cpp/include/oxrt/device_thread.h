@@ -108,19 +108,22 @@ template <class... T> __attribute__((noinline)) void print(OxrtThread& thread, c
 
 /* ---- checked access ------------------------------------------------------------------------------------------------------------- */
 
-template <class T, int RANK, class... I>
-OXRT_INLINE bool inBounds(OxrtThread& thread, const Array<T, RANK>& array, Place place, I... indices) {
-    if (__builtin_expect(array.contains(indices...), 1))
-        return true;
-    faultWithValues(thread, OXRT_FAULT_BOUNDS, "index out of range", place, indices...);
-    return false;
-}
+/* Array access with a check: an index out of range reads zero, or has `contains` say no, and is a fault. */
+struct Checked {
+    OxrtThread& thread;
+    Place place;
 
-/* The element, or zero and a fault where an index is out of range. */
-template <class T, int RANK, class... I>
-OXRT_INLINE T loadChecked(OxrtThread& thread, const Array<T, RANK>& array, Place place, I... indices) {
-    return inBounds(thread, array, place, indices...) ? array.at(indices...) : T{};
-}
+    template <class T, int RANK, class... I> OXRT_INLINE bool contains(const Array<T, RANK>& array, I... indices) const {
+        if (__builtin_expect(array.contains(indices...), 1))
+            return true;
+        faultWithValues(thread, OXRT_FAULT_BOUNDS, "index out of range", place, indices...);
+        return false;
+    }
+    template <class T, int RANK, class... I> OXRT_INLINE T load(const Array<T, RANK>& array, I... indices) const {
+        return contains(array, indices...) ? array.at(indices...) : T{};
+    }
+};
+OXRT_INLINE Checked checked(OxrtThread& thread, Place place = Place::current()) { return {thread, place}; }
 
 /* ---- SBT records ---------------------------------------------------------------------------------------------------------------- */
 
@@ -137,20 +140,70 @@ OXRT_INLINE const OxrtRecordHeader* findRecord(const OxrtLaunch& launch, const u
     return __builtin_expect(header->pipelineUid == launch.pipelineUid, 1) ? header : nullptr;
 }
 
+/* The data of a record that the SBT gives by address. */
+template <class Record> OXRT_INLINE const Record& recordAt(const uint8_t* header) {
+    return *reinterpret_cast<const Record*>(header + OXRT_SBT_RECORD_HEADER_SIZE);
+}
+
+/* Callables record `index` if it holds a program in `slot`; else a fault, if the launch is validated, and null. */
+OXRT_INLINE const OxrtRecordHeader* findCallable(OxrtThread& thread, uint32_t index, int slot, Place place = Place::current()) {
+    const OxrtLaunch& launch = *thread.launch;
+    const OxrtRecordHeader* record = findRecord(launch, launch.callableRecords, launch.callableStride, launch.callableCount, index);
+    if (__builtin_expect(record && record->programs[slot] != OXRT_NO_PROGRAM, 1))
+        return record;
+    if (launch.validation)
+        fault(thread, index >= launch.callableCount ? OXRT_FAULT_CALLABLE_SBT : slot == 0 ? OXRT_FAULT_NO_DIRECT : OXRT_FAULT_NO_CONTINUATION,
+              "the callables record does not hold the callable that is called", place);
+    return nullptr;
+}
+
+__attribute__((noinline, cold, unused)) static void payloadMismatch(OxrtThread& thread) {
+    fault(thread, OXRT_FAULT_PAYLOAD_MISMATCH, "the record's program takes another payload than the trace carries", {nullptr, 0});
+}
+
+/* ---- launch indices ------------------------------------------------------------------------------------------------------------- */
+
+/* Runs f for every index of a tile, the thread's index set to it. */
+template <class F> OXRT_INLINE void forEachIndex(OxrtThread& thread, const OxrtTile& tile, F f) {
+    for (uint32_t z = tile.begin[2]; z < tile.end[2]; ++z)
+        for (uint32_t y = tile.begin[1]; y < tile.end[1]; ++y)
+            for (uint32_t x = tile.begin[0]; x < tile.end[0]; ++x) {
+                thread.index[0] = x;
+                thread.index[1] = y;
+                thread.index[2] = z;
+                f();
+            }
+}
+
 /* ---- exceptions ----------------------------------------------------------------------------------------------------------------- */
 
 /* Ends the launch index: the caller returns, and so do all above it. */
 template <class... Detail>
-OXRT_INLINE void throwException(OxrtThread& thread, const char* file, int32_t code, Detail... details) {
+OXRT_INLINE void throwException(OxrtThread& thread, const char* line, int32_t code, Detail... details) {
     const uint32_t values[sizeof...(Detail) + 1] = {uint32_t(details)..., 0};
     for (uint32_t i = 0; i < sizeof...(Detail); ++i)
         thread.exceptionDetails[i] = values[i];
     thread.exceptionCode = code;
-    thread.exceptionLine = file;
+    thread.exceptionLine = line;
     thread.exceptionPending = 1;
 }
 OXRT_INLINE int32_t getExceptionCode(const OxrtThread& thread) { return thread.exceptionCode; }
-template <int INDEX> OXRT_INLINE uint32_t getExceptionDetail(const OxrtThread& thread) { return thread.exceptionDetails[INDEX]; }
+OXRT_INLINE uint32_t getExceptionDetail_0(const OxrtThread& thread) { return thread.exceptionDetails[0]; }
+OXRT_INLINE uint32_t getExceptionDetail_1(const OxrtThread& thread) { return thread.exceptionDetails[1]; }
+OXRT_INLINE uint32_t getExceptionDetail_2(const OxrtThread& thread) { return thread.exceptionDetails[2]; }
+OXRT_INLINE uint32_t getExceptionDetail_3(const OxrtThread& thread) { return thread.exceptionDetails[3]; }
+OXRT_INLINE uint32_t getExceptionDetail_4(const OxrtThread& thread) { return thread.exceptionDetails[4]; }
+OXRT_INLINE uint32_t getExceptionDetail_5(const OxrtThread& thread) { return thread.exceptionDetails[5]; }
+OXRT_INLINE uint32_t getExceptionDetail_6(const OxrtThread& thread) { return thread.exceptionDetails[6]; }
+OXRT_INLINE uint32_t getExceptionDetail_7(const OxrtThread& thread) { return thread.exceptionDetails[7]; }
+
+/* The number of the exception program to run for the pending exception; it is not pending any more. */
+OXRT_INLINE int32_t takeException(OxrtThread& thread) {
+    thread.exceptionPending = 0;
+    thread.traceDepth = 0;
+    const auto* header = reinterpret_cast<const OxrtRecordHeader*>(thread.launch->exceptionRecord);
+    return header && header->pipelineUid == thread.launch->pipelineUid ? header->programs[0] : OXRT_NO_PROGRAM;
+}
 
 }  // namespace OXRT_ISA
 }  // namespace oxrt

@@ -102,16 +102,24 @@ template <class T> struct Word {
     }
 };
 
-/* The payload of a trace without one, and of programs that use none. */
+/* The payload of a trace without one. */
 struct NoPayload {};
+inline NoPayload noPayload;
 
-/* The same words as another struct. */
-template <class To, class From> OXRT_INLINE To bitCopy(const From& from) {
-    static_assert(sizeof(To) == sizeof(From));
-    To to;
-    __builtin_memcpy(&to, &from, sizeof(To));
-    return to;
-}
+/* A payload seen as another class with the same words, for the duration of a call. */
+template <class To, class From> struct PayloadAs {
+    From& original;
+    To copy;
+
+    OXRT_INLINE explicit PayloadAs(From& payload) : original(payload) {
+        static_assert(sizeof(To) == sizeof(From));
+        __builtin_memcpy(&copy, &payload, sizeof(To));
+    }
+    OXRT_INLINE ~PayloadAs() { __builtin_memcpy(&original, &copy, sizeof(To)); }
+    PayloadAs(const PayloadAs&) = delete;
+    PayloadAs& operator=(const PayloadAs&) = delete;
+    OXRT_INLINE operator To&() { return copy; }
+};
 
 /* ---- loops --------------------------------------------------------------------------------------------------------------------- */
 

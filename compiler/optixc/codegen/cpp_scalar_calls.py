@@ -1,0 +1,136 @@
+"""Calls of the scalar emitter that act: helpers, device functions with effects, traces, callables."""
+
+from __future__ import annotations
+
+from optixc.codegen.cpp_expr import Expressions
+from optixc.codegen.cpp_signatures import FunctionNames, Signatures
+from optixc.codegen.cpp_types import TypeNames
+from optixc.codegen.names import Scope, string_literal
+from optixc.codegen.needs import REPORT, THROW, Options
+from optixc.codegen.program_classes import known_flags
+from optixc.ir.intrinsic_rows import INTRINSICS
+from optixc.ir.intrinsics import Effect, State
+from optixc.ir.nodes import (
+    CallCallable,
+    CallHelper,
+    CallIntrinsic,
+    ElementRef,
+    Expr,
+    FieldRef,
+    Function,
+    IndexRef,
+    LocalRef,
+    ParamsRef,
+    Trace,
+    is_reference_type,
+)
+from optixc.ir.types import Struct
+from optixc.ir.walk import expressions
+
+_FLAGS_ARGUMENT = 7
+
+
+class ScalarCalls:
+    """Texts of the calls of one function, and after which of them it returns."""
+
+    def __init__(
+        self, function: Function, names: FunctionNames, printer: Expressions, signatures: Signatures, types: TypeNames, options: Options
+    ) -> None:
+        self._function = function
+        self._names = names
+        self._expressions = printer
+        self._signatures = signatures
+        self._types = types
+        self._options = options
+        hidden = (names.thread, names.trace, names.params, names.hit_object)
+        self._scope = Scope(taken=(*names.locals.values(), *hidden))
+
+    def fresh(self, wanted: str) -> str:
+        """A name for a local of the emitter's own."""
+        return self._scope.name(wanted)
+
+    def params_struct(self) -> Struct:
+        """The launch parameters that the function reads."""
+        return next(expression.type for expression in expressions(self._function.body) if isinstance(expression, ParamsRef))
+
+    def ending(self, statement: CallHelper | CallIntrinsic | CallCallable | Trace) -> str | None:
+        """The condition under which the function returns after the call; "" for always, None for never."""
+        match statement:
+            case CallIntrinsic(name=name):
+                if name == REPORT:
+                    return self._has_ended()
+                is_end = INTRINSICS[name].effect in (Effect.ENDS_PROGRAM, Effect.ENDS_LAUNCH_INDEX)
+                return "" if is_end else None
+            case CallHelper(function=function):
+                needs = self._signatures.needs(function)
+                conditions = [self._has_ended()] if needs.ends else []
+                if needs.throws:
+                    conditions.append(self._is_pending())
+                return " || ".join(conditions) or None
+            case CallCallable() | Trace():
+                return self._is_pending() if self._options.traces_throw else None
+
+    def _has_ended(self) -> str:
+        return f"oxrt::hasEnded({self._names.trace})"
+
+    def _is_pending(self) -> str:
+        return f"{self._names.thread}.exceptionPending"
+
+    # ---- texts ---------------------------------------------------------------------------------------------------------------
+
+    def helper(self, statement: CallHelper) -> str:
+        hidden = self._signatures.hidden_argument(statement.function, self._names)
+        arguments = [self._argument(argument) for argument in statement.arguments]
+        return f"{self._signatures.callee(statement.function)}({', '.join([*hidden, *arguments])})"
+
+    def intrinsic(self, statement: CallIntrinsic) -> str | None:
+        """None for a call that does nothing in this pipeline."""
+        row = INTRINSICS[statement.name]
+        arguments = [self._expressions.text(argument) for argument in statement.arguments]
+        if statement.name == REPORT:
+            return self._report(statement, arguments)
+        if statement.name == THROW:
+            return self._throw(statement, arguments)
+        hidden = {
+            State.NONE: [],
+            State.THREAD: [self._names.thread],
+            State.RAY: [self._names.trace],
+            State.HIT_OBJECT: [self._names.hit_object],
+        }[row.state]
+        return f"{row.cpp}({', '.join([*hidden, *arguments])})"
+
+    def _report(self, statement: CallIntrinsic, arguments: list[str]) -> str:
+        offered = statement.arguments[2:]
+        words = arguments[:2]
+        if offered:
+            is_struct = len(offered) == 1 and isinstance(offered[0].type, Struct)
+            words.append(arguments[2] if is_struct else f"oxrt::attributeWords({', '.join(arguments[2:])})")
+        return f"oxrt::reportIntersection<Programs>({self._names.trace}, {', '.join(words)})"
+
+    def _throw(self, statement: CallIntrinsic, arguments: list[str]) -> str | None:
+        if not self._options.user_exceptions:
+            return None
+        place = string_literal(f"{statement.span.path}:{statement.span.line}")
+        return f"oxrt::throwException({', '.join([self._names.thread, place, *arguments])})"
+
+    def callable(self, statement: CallCallable) -> str:
+        name = self._signatures.dispatcher(statement)
+        arguments = [self._names.thread, self._expressions.text(statement.index)]
+        return f"{name}({', '.join([*arguments, *(self._argument(argument) for argument in statement.arguments)])})"
+
+    def trace(self, statement: Trace) -> str:
+        programs = self._signatures.program_class(statement.payload_type)
+        payload = "oxrt::noPayload" if statement.payload is None else self._expressions.place(statement.payload)
+        arguments = [self._expressions.text(argument) for argument in statement.arguments]
+        if arguments:
+            flags = known_flags(statement)
+            if flags is not None:
+                arguments[_FLAGS_ARGUMENT] = f"oxrt::KnownFlags<{flags & 0xFFFF}>()"
+        hit_object = [] if statement.name == "trace" else [self._names.hit_object]
+        words = [self._names.thread, *hit_object, *arguments, payload]
+        return f"oxrt::{statement.name}<{programs}>({', '.join(words)})"
+
+    def _argument(self, argument: Expr) -> str:
+        """An argument of a helper; structs and fixed arrays stay places, so that they can be passed by reference."""
+        is_place = is_reference_type(argument.type) and isinstance(argument, LocalRef | FieldRef | IndexRef | ElementRef)
+        return self._expressions.place(argument) if is_place else self._expressions.text(argument)

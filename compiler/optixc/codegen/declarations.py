@@ -1,0 +1,132 @@
+"""Where a function's locals are declared in C++.
+
+A local is declared by its first assignment if that assignment stands in the block that holds all its uses and before all of them;
+the variable of a counting loop in the loop's head; everything else at the top of the function.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+from optixc.ir.nodes import Assign, CallCallable, CallHelper, CallIntrinsic, Expr, ForRange, Function, Local, LocalRef, Stmt, Trace, While
+from optixc.ir.walk import Body, blocks, operands, place_root, statements, subexpressions
+
+
+@dataclass
+class Declarations:
+    """`at_top`: in order of first assignment. `at_statement`: by the id of the statement that declares. `unread`: never read."""
+
+    at_top: list[Local] = field(default_factory=list)
+    at_statement: dict[int, Local] = field(default_factory=dict)
+    unread: set[str] = field(default_factory=set)
+
+
+def assigned_local(statement: Stmt) -> Local | None:
+    """The local that a statement gives a whole new value, None if there is none."""
+    match statement:
+        case Assign(target=LocalRef(local=local)):
+            return local
+        case CallHelper(target=target) | CallIntrinsic(target=target) | CallCallable(target=target) | ForRange(target=target):
+            return target
+        case _:
+            return None
+
+
+def declarations(function: Function) -> Declarations:
+    """Decides for every local of a function."""
+    result = Declarations()
+    read = _read_names(function.body)
+    for local in function.locals:
+        if not _is_mentioned(function.body, local.name):
+            continue
+        if local.name not in read:
+            result.unread.add(local.name)
+        statement = _declaring_statement(function.body, local.name)
+        if statement is None:
+            result.at_top.append(local)
+        else:
+            result.at_statement[id(statement)] = local
+    return result
+
+
+def is_changed(body: Body, name: str) -> bool:
+    """Whether anything in a block gives the local a new value, in whole or in part."""
+    return any(_changes(statement, name) for statement in statements(body))
+
+
+def reads(statement: Stmt) -> set[str]:
+    """Names of locals that a statement reads itself, its blocks apart. The root of a place that is stored to is not read."""
+    names: set[str] = set()
+    for position, operand in enumerate(operands(statement)):
+        is_target = isinstance(statement, Assign) and position == 0
+        root = place_root(operand) if is_target else None
+        for part in subexpressions(operand):
+            if isinstance(part, LocalRef) and not (root is not None and part.local.name == root.name):
+                names.add(part.local.name)
+    return names
+
+
+def _changes(statement: Stmt, name: str) -> bool:
+    target = assigned_local(statement)
+    if target is not None and target.name == name:
+        return True
+    if isinstance(statement, Assign):
+        root = place_root(statement.target)
+        return root is not None and root.name == name
+    if isinstance(statement, CallHelper | CallCallable):
+        return any(isinstance(a, LocalRef) and a.local.name == name for a in statement.arguments)
+    if isinstance(statement, Trace) and statement.payload is not None:
+        root = place_root(statement.payload)
+        return root is not None and root.name == name
+    return False
+
+
+def _read_names(body: Body) -> set[str]:
+    return {name for statement in statements(body) for name in reads(statement)}
+
+
+def _mentions_itself(statement: Stmt, name: str) -> bool:
+    target = assigned_local(statement)
+    if target is not None and target.name == name:
+        return True
+    return any(isinstance(part, LocalRef) and part.local.name == name for operand in operands(statement) for part in subexpressions(operand))
+
+
+def _mentions(statement: Stmt, name: str) -> bool:
+    return _mentions_itself(statement, name) or any(_is_mentioned(block, name) for block in blocks(statement))
+
+
+def _is_mentioned(body: Body, name: str) -> bool:
+    return any(_mentions(statement, name) for statement in body)
+
+
+def _declaring_statement(body: Body, name: str) -> Stmt | None:
+    """The statement that can declare the local: the first mention in the innermost block that holds all of them."""
+    mentioning = [statement for statement in body if _mentions(statement, name)]
+    first = mentioning[0]
+    target = assigned_local(first)
+    if target is not None and target.name == name and not isinstance(first, ForRange):
+        return None if name in reads(first) else first
+    if len(mentioning) > 1:
+        return None
+    if isinstance(first, ForRange) and target is not None and target.name == name:
+        is_simple = not is_changed(first.body, name) and not any(_mentions_in(bound, name) for bound in (first.start, first.stop, first.step))
+        return first if is_simple else None
+    inner = _inner_blocks(first)
+    if _mentions_itself(first, name) and not (isinstance(first, While) and first.condition_body):
+        return None
+    holders = [block for block in inner if _is_mentioned(block, name)]
+    if len(holders) != 1 or (isinstance(first, While) and _mentions_itself(first, name) and not _is_mentioned(first.condition_body, name)):
+        return None
+    return _declaring_statement(holders[0], name)
+
+
+def _mentions_in(expression: Expr, name: str) -> bool:
+    return any(isinstance(part, LocalRef) and part.local.name == name for part in subexpressions(expression))
+
+
+def _inner_blocks(statement: Stmt) -> tuple[Body, ...]:
+    """The C++ blocks of a statement: what is hoisted from a loop's condition stands in the same block as the loop's body."""
+    if isinstance(statement, While) and statement.condition_body:
+        return ((*statement.condition_body, *statement.body),)
+    return blocks(statement)

@@ -1,0 +1,143 @@
+"""What a pipeline compiles in, and which line asked for it: the text of `pipeline.report()`, and what the emitters may leave out."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+
+from optixc.ir.intrinsic_rows import ATOMIC_NAMES
+from optixc.ir.nodes import (
+    Assert,
+    CallCallable,
+    CallIntrinsic,
+    ElementRef,
+    Expr,
+    Function,
+    IntrinsicCall,
+    Literal,
+    Pipeline,
+    Print,
+    Stmt,
+    Trace,
+    While,
+)
+from optixc.ir.programs import ProgramKind
+from optixc.ir.walk import expressions, statements
+from optixc.source import Span
+
+_RAY_FLAGS_ARGUMENT = 7
+_CULLING = 16 | 32 | 64 | 128
+_TERMINATE = 4
+
+
+@dataclass(frozen=True)
+class Feature:
+    """One thing that a pipeline may contain; `span` is the first place that asked for it, None for an option or if it is out."""
+
+    name: str
+    is_in: bool
+    span: Span | None = None
+    reason: str = ""
+
+    def describe(self) -> str:
+        """One line: the name and who asked for it, or that it is out."""
+        if not self.is_in:
+            return f"{self.name}: not compiled in"
+        asked = f"{self.span.path}:{self.span.line}" if self.span is not None else self.reason
+        return f"{self.name}: {asked}" if asked else self.name
+
+
+@dataclass(frozen=True)
+class Features:
+    """All features, in a fixed order."""
+
+    items: tuple[Feature, ...]
+
+    @property
+    def compiled_in(self) -> tuple[Feature, ...]:
+        return tuple(feature for feature in self.items if feature.is_in)
+
+    def has(self, name: str) -> bool:
+        return any(feature.name == name and feature.is_in for feature in self.items)
+
+    @property
+    def uses_textures(self) -> bool:
+        return self.has("textures")
+
+
+def features(pipeline: Pipeline) -> Features:
+    """Looks through the programs and helpers that are left after the passes."""
+    options = pipeline.options
+    return Features(
+        (
+            *_of_programs(pipeline),
+            _first(pipeline, "recursion", lambda s: isinstance(s, Trace), of=_is_shader),
+            _first(pipeline, "occlusion queries", lambda s: isinstance(s, Trace) and _may(s, _TERMINATE)),
+            _first(pipeline, "face and any-hit culling", lambda s: isinstance(s, Trace) and _may(s, _CULLING)),
+            _first(pipeline, "hit objects", lambda s: isinstance(s, Trace) and s.name != "trace"),
+            _first(pipeline, "callables", lambda s: isinstance(s, CallCallable)),
+            _first(pipeline, "exceptions thrown", lambda s: isinstance(s, CallIntrinsic) and s.name == "throw_exception"),
+            _first(pipeline, "atomics", lambda s: isinstance(s, CallIntrinsic) and s.name in ATOMIC_NAMES),
+            _first_expression(pipeline, "textures", lambda e: isinstance(e, IntrinsicCall) and e.name.startswith("tex")),
+            _first(pipeline, "print", lambda s: isinstance(s, Print)),
+            _first(pipeline, "loops without a bound (they poll for cancellation)", lambda s: isinstance(s, While) and not s.bounded),
+            _option("assertions", options.debug or options.validation, _first(pipeline, "", lambda s: isinstance(s, Assert)).span),
+            _option("array bounds checks", options.debug or options.validation, _element(pipeline)),
+            _option("validation", options.validation),
+            _option("motion", options.uses_motion_blur),
+            _option("opacity micromaps", options.allow_opacity_micromaps),
+            _option("bound values", bool(options.bound_values)),
+        )
+    )
+
+
+def _of_programs(pipeline: Pipeline) -> Iterator[Feature]:
+    for kind in ProgramKind:
+        if kind is ProgramKind.RAYGEN:
+            continue
+        found = next((program for program in pipeline.programs if program.kind is kind), None)
+        name = f"{kind.value.replace('_', ' ')} programs"
+        yield Feature(name, found is not None, found.span if found is not None else None)
+
+
+def _is_shader(function: Function) -> bool:
+    return function.kind in (ProgramKind.CLOSESTHIT, ProgramKind.MISS, ProgramKind.CONTINUATION_CALLABLE)
+
+
+def _functions(pipeline: Pipeline) -> tuple[Function, ...]:
+    return (*pipeline.programs, *pipeline.helpers)
+
+
+def _first(
+    pipeline: Pipeline, name: str, matches: Callable[[Stmt], bool], of: Callable[[Function], bool] = lambda function: True
+) -> Feature:
+    for function in _functions(pipeline):
+        if of(function):
+            for statement in statements(function.body):
+                if matches(statement):
+                    return Feature(name, True, statement.span)
+    return Feature(name, False)
+
+
+def _first_expression(pipeline: Pipeline, name: str, matches: Callable[[Expr], bool]) -> Feature:
+    for function in _functions(pipeline):
+        for expression in expressions(function.body):
+            if matches(expression):
+                return Feature(name, True, getattr(expression, "span", None))
+    return Feature(name, False)
+
+
+def _element(pipeline: Pipeline) -> Span | None:
+    return _first_expression(pipeline, "", lambda e: isinstance(e, ElementRef)).span
+
+
+def _option(name: str, is_on: bool, span: Span | None = None) -> Feature:
+    return Feature(name, is_on, span if is_on else None, "asked for by the pipeline's options")
+
+
+def _may(trace: Trace, flags: int) -> bool:
+    """Whether the ray flags of a trace may hold one of these."""
+    if not trace.arguments:
+        return False
+    given = trace.arguments[_RAY_FLAGS_ARGUMENT]
+    return bool(int(given.value) & flags) if isinstance(given, Literal) and not isinstance(given.value, tuple) else True
