@@ -1,0 +1,314 @@
+/* The launch indices and the trace in flight of W lanes, and the device functions that read them: device_thread.h and device_ray.h for
+ * lanes. Names and meanings are theirs.
+ */
+#ifndef OXRT_LANES_RAY_H
+#define OXRT_LANES_RAY_H
+
+#include <oxrt/device_trace.h>
+#include <oxrt/lanes_memory.h>
+
+namespace oxrt {
+inline namespace OXRT_ISA {
+
+/* ---- the launch --------------------------------------------------------------------------------------------------------------- */
+
+/* What the lanes of one block of launch indices share, and where each of them is. */
+template <int W> struct LanesThread {
+    OxrtThread* thread;
+    Lanes<uint32_t, W> index[3];
+    Lanes<bool, W> thrown; /* lanes that threw an exception and run no further */
+    Lanes<int32_t, W> exceptionCode;
+    Lanes<uint32_t, W> exceptionDetails[8];
+
+    /* Makes the scalar thread stand for one lane: before faults and scalar programs. */
+    OXRT_INLINE OxrtThread& atLane(int lane) const {
+        for (int axis = 0; axis < 3; ++axis)
+            thread->index[axis] = index[axis][lane];
+        return *thread;
+    }
+};
+
+template <int W> OXRT_INLINE Wide<uint3, W> getLaunchIndex(const LanesThread<W>& thread) {
+    return {thread.index[0], thread.index[1], thread.index[2]};
+}
+template <int W> OXRT_INLINE uint3 getLaunchDimensions(const LanesThread<W>& thread) { return getLaunchDimensions(*thread.thread); }
+template <class Params, int W> OXRT_INLINE const Params& launchParams(const LanesThread<W>& thread) {
+    return launchParams<Params>(*thread.thread);
+}
+template <int W> OXRT_INLINE bool isCancelled(const LanesThread<W>& thread) { return isCancelled(*thread.thread); }
+
+/* ---- the trace in flight ------------------------------------------------------------------------------------------------------ */
+
+template <int W> struct Packet;
+template <> struct Packet<8> {
+    using RayHit = RTCRayHit8;
+    static OXRT_INLINE void intersect(const OxrtServices& s, const int* valid, void* scene, RayHit& packet, RTCIntersectArguments* arguments) {
+        s.intersect8(valid, scene, &packet, arguments);
+    }
+    static OXRT_INLINE void occluded(const OxrtServices& s, const int* valid, void* scene, RayHit& packet, RTCOccludedArguments* arguments) {
+        s.occluded8(valid, scene, &packet.ray, arguments);
+    }
+};
+template <> struct Packet<16> {
+    using RayHit = RTCRayHit16;
+    static OXRT_INLINE void intersect(const OxrtServices& s, const int* valid, void* scene, RayHit& packet, RTCIntersectArguments* arguments) {
+        s.intersect16(valid, scene, &packet, arguments);
+    }
+    static OXRT_INLINE void occluded(const OxrtServices& s, const int* valid, void* scene, RayHit& packet, RTCOccludedArguments* arguments) {
+        s.occluded16(valid, scene, &packet.ray, arguments);
+    }
+};
+
+/* One trace of all lanes. Rays and hits stay in Embree's packet; what is derived from them is computed where it is read. */
+template <int W> struct RayLanes {
+    typename Packet<W>::RayHit packet;
+    LanesThread<W>* thread;
+    const OxrtTraversableView* root;
+    Lanes<float, W> tmin, tmax;
+    Lanes<float, W> t; /* what getRayTmax gives */
+    Lanes<uint32_t, W> mask;
+    Lanes<uint32_t, W> sbtOffset, sbtStride, missIndex;
+    uint32_t flags;
+    Lanes<bool, W> active; /* the lanes that hit something, or missed */
+    const OxrtInstanceView* commonInstance; /* if all active lanes hit one geometry: its instance or null */
+    const OxrtGeometry* commonGeometry;     /* ... and itself, else null */
+    const OxrtRecordHeader* commonRecord;   /* the record of all active lanes, null if they differ */
+    WordPlaces<W> records;                  /* else where each lane's record is */
+    Lanes<uint32_t, W> kind;                /* of custom primitives */
+    Lanes<uint32_t, W> attributes[8];
+};
+
+template <int W> OXRT_INLINE Lanes<float, W> packetLanes(const float (&values)[W]) { return loadLanes<float, W>(values); }
+template <int W> OXRT_INLINE Lanes<uint32_t, W> packetLanes(const unsigned (&values)[W]) { return loadLanes<uint32_t, W>(values); }
+
+template <int W> OXRT_INLINE Wide<float3, W> getWorldRayOrigin(const RayLanes<W>& ray) {
+    const auto& r = ray.packet.ray;
+    return {packetLanes<W>(r.org_x), packetLanes<W>(r.org_y), packetLanes<W>(r.org_z)};
+}
+template <int W> OXRT_INLINE Wide<float3, W> getWorldRayDirection(const RayLanes<W>& ray) {
+    const auto& r = ray.packet.ray;
+    return {packetLanes<W>(r.dir_x), packetLanes<W>(r.dir_y), packetLanes<W>(r.dir_z)};
+}
+template <int W> OXRT_INLINE Lanes<float, W> getRayTmin(const RayLanes<W>& ray) { return ray.tmin; }
+template <int W> OXRT_INLINE Lanes<float, W> getRayTmax(const RayLanes<W>& ray) { return ray.t; }
+template <int W> OXRT_INLINE Lanes<float, W> getRayTime(const RayLanes<W>& ray) { return packetLanes<W>(ray.packet.ray.time); }
+template <int W> OXRT_INLINE Lanes<uint32_t, W> getRayFlags(const RayLanes<W>& ray) { return ray.flags; }
+template <int W> OXRT_INLINE Lanes<uint32_t, W> getRayVisibilityMask(const RayLanes<W>& ray) { return ray.mask; }
+
+/* ---- where the hits are ------------------------------------------------------------------------------------------------------- */
+
+/* Byte places of structs in an array: `index` of each lane, the array's base shared. */
+template <class T, int W> OXRT_INLINE WordPlaces<W> placesIn(const T* array, Lanes<uint32_t, W> index) {
+    static_assert(sizeof(T) % 4 == 0);
+    return {reinterpret_cast<const char*>(array), bitCast<int32_t>(index * uint32_t(sizeof(T) / 4))};
+}
+
+#define OXRT_FIELD_OFFSET(type, field) int64_t(__builtin_offsetof(type, field))
+
+/* The lanes that hit something inside of an instance. */
+template <int W> OXRT_INLINE Lanes<bool, W> inInstance(const RayLanes<W>& ray) {
+    if (!ray.root->instances)
+        return false;
+    return ray.active & (packetLanes<W>(ray.packet.hit.instID[0]) != RTC_INVALID_GEOMETRY_ID);
+}
+template <int W> OXRT_INLINE WordPlaces<W> instancePlaces(const RayLanes<W>& ray) {
+    return placesIn<OxrtInstanceView, W>(ray.root->instances, packetLanes<W>(ray.packet.hit.instID[0]));
+}
+/* A 4-byte field of each lane's instance, `otherwise` without one. */
+template <class T, int W> OXRT_INLINE Lanes<T, W> instanceField(const RayLanes<W>& ray, int64_t offset, T otherwise) {
+    if (ray.commonGeometry) {
+        T value = otherwise;
+        if (ray.commonInstance)
+            __builtin_memcpy(&value, reinterpret_cast<const char*>(ray.commonInstance) + offset, sizeof(T));
+        return value;
+    }
+    const Lanes<bool, W> mask = inInstance(ray);
+    return select(mask, gather<T, W>(instancePlaces(ray), offset, mask), otherwise);
+}
+
+/* Addresses of the geometries that were hit. */
+template <int W> OXRT_INLINE AddressPlaces<W> geometryPlaces(const RayLanes<W>& ray) {
+    const Lanes<uint64_t, W> id = convert<uint64_t>(packetLanes<W>(ray.packet.hit.geomID));
+    Lanes<uint64_t, W> geometries = reinterpret_cast<uint64_t>(ray.root->geometries);
+    const Lanes<bool, W> mask = inInstance(ray);
+    if (any(mask)) {
+        const AddressPlaces<W> child{gather<uint64_t, W>(instancePlaces(ray), OXRT_FIELD_OFFSET(OxrtInstanceView, child), mask)};
+        geometries = select(mask, gather<uint64_t, W>(child, OXRT_FIELD_OFFSET(OxrtTraversableView, geometries), mask), geometries);
+    }
+    return {geometries + id * uint64_t(sizeof(OxrtGeometry))};
+}
+template <class T, int W> OXRT_INLINE Lanes<T, W> geometryField(const RayLanes<W>& ray, int64_t offset) {
+    if (ray.commonGeometry) {
+        T value;
+        __builtin_memcpy(&value, reinterpret_cast<const char*>(ray.commonGeometry) + offset, sizeof(T));
+        return value;
+    }
+    return gather<T, W>(geometryPlaces(ray), offset, ray.active);
+}
+#define OXRT_GEOMETRY_FIELD(type, ray, field) geometryField<type>(ray, OXRT_FIELD_OFFSET(OxrtGeometry, field))
+
+template <int W> OXRT_INLINE Lanes<uint32_t, W> localPrimitive(const RayLanes<W>& ray) { return packetLanes<W>(ray.packet.hit.primID); }
+template <int W> OXRT_INLINE Lanes<uint32_t, W> getPrimitiveIndex(const RayLanes<W>& ray) {
+    return localPrimitive(ray) + OXRT_GEOMETRY_FIELD(uint32_t, ray, primitiveIndexOffset);
+}
+template <int W> OXRT_INLINE Lanes<uint32_t, W> localRecord(const RayLanes<W>& ray) {
+    const Lanes<uint32_t, W> primitive = localPrimitive(ray);
+    if (ray.commonGeometry) {
+        const uint32_t* offsets = ray.commonGeometry->recordOffsets;
+        return offsets ? gather<uint32_t, W>(placesIn<uint32_t, W>(offsets, primitive), 0, ray.active) : Lanes<uint32_t, W>(0u);
+    }
+    const Lanes<uint64_t, W> offsets = OXRT_GEOMETRY_FIELD(uint64_t, ray, recordOffsets);
+    const Lanes<bool, W> mask = ray.active & (offsets != uint64_t(0));
+    return gather<uint32_t, W>(AddressPlaces<W>{offsets + convert<uint64_t>(primitive) * uint64_t(4)}, 0, mask);
+}
+template <int W> OXRT_INLINE Lanes<uint32_t, W> getSbtGASIndex(const RayLanes<W>& ray) {
+    return OXRT_GEOMETRY_FIELD(uint32_t, ray, recordBase) + localRecord(ray);
+}
+template <int W> OXRT_INLINE Lanes<uint32_t, W> getInstanceId(const RayLanes<W>& ray) {
+    return instanceField<uint32_t>(ray, OXRT_FIELD_OFFSET(OxrtInstanceView, instanceId), ~0u);
+}
+template <int W> OXRT_INLINE Lanes<uint32_t, W> getInstanceIndex(const RayLanes<W>& ray) {
+    return select(inInstance(ray), packetLanes<W>(ray.packet.hit.instID[0]), 0u);
+}
+template <int W> OXRT_INLINE Lanes<uint32_t, W> getClusterId(const RayLanes<W>&) { return ~0u; }
+template <int W> OXRT_INLINE Lanes<uint32_t, W> getPrimitiveType(const RayLanes<W>& ray) {
+    return OXRT_GEOMETRY_FIELD(uint32_t, ray, primitiveType);
+}
+
+/* The scalar ray of one lane, with what the getters of a hit read: for device functions that few programs use. */
+template <int W> OXRT_INLINE void scalarHit(Ray& one, const RayLanes<W>& ray, int lane) {
+    const auto& packet = ray.packet;
+    one.thread = ray.thread->thread;
+    one.root = ray.root;
+    one.origin = {packet.ray.org_x[lane], packet.ray.org_y[lane], packet.ray.org_z[lane]};
+    one.direction = {packet.ray.dir_x[lane], packet.ray.dir_y[lane], packet.ray.dir_z[lane]};
+    one.tmin = ray.tmin[lane];
+    one.time = packet.ray.time[lane];
+    one.flags = ray.flags;
+    const RTCHit hit = {packet.hit.Ng_x[lane], packet.hit.Ng_y[lane], packet.hit.Ng_z[lane], packet.hit.u[lane], packet.hit.v[lane],
+                        packet.hit.primID[lane], packet.hit.geomID[lane], {packet.hit.instID[0][lane]}, {0}};
+    enterHit(one, hit, ray.t[lane]);
+    one.kind = ray.kind[lane];
+}
+
+/* f(scalar ray, lane) in every active lane; the results as lanes, zero elsewhere. */
+template <class F, int W> auto mapHits(const RayLanes<W>& ray, F f) {
+    Ray one;
+    using R = decltype(f(static_cast<const Ray&>(one), 0));
+    Wide<R, W> result = spread<W>(R{});
+    eachLane(ray.active, [&](int lane) {
+        scalarHit(one, ray, lane);
+        insertLane(result, f(static_cast<const Ray&>(one), lane), lane);
+    });
+    return result;
+}
+
+#define OXRT_MAPPED_GETTER(name) \
+    template <int W> auto name(const RayLanes<W>& ray) { return mapHits(ray, [](const Ray& one, int) { return name(one); }); }
+OXRT_MAPPED_GETTER(getGASTraversableHandle)
+OXRT_MAPPED_GETTER(getHitKind)
+OXRT_MAPPED_GETTER(isTriangleHit)
+OXRT_MAPPED_GETTER(isTriangleFrontFaceHit)
+OXRT_MAPPED_GETTER(isTriangleBackFaceHit)
+OXRT_MAPPED_GETTER(isBackFaceHit)
+OXRT_MAPPED_GETTER(isFrontFaceHit)
+OXRT_MAPPED_GETTER(getTransformListSize)
+OXRT_MAPPED_GETTER(getObjectToWorldTransformMatrix)
+OXRT_MAPPED_GETTER(getWorldToObjectTransformMatrix)
+#undef OXRT_MAPPED_GETTER
+template <class I, int W> auto getTransformListHandle(const RayLanes<W>& ray, I index) {
+    const Lanes<uint32_t, W> wide = convert<uint32_t>(index);
+    return mapHits(ray, [&](const Ray& one, int lane) { return getTransformListHandle(one, wide[lane]); });
+}
+
+/* ---- transforms --------------------------------------------------------------------------------------------------------------- */
+
+/* The 12 numbers of each lane's matrix at `offset` of its instance. */
+template <int W> struct MatrixLanes {
+    Lanes<float, W> m[12];
+};
+template <int W> OXRT_INLINE MatrixLanes<W> instanceMatrix(const RayLanes<W>& ray, int64_t offset) {
+    MatrixLanes<W> result;
+    for (int i = 0; i < 12; ++i)
+        result.m[i] = instanceField<float>(ray, offset + 4 * i, i % 5 == 0 ? 1.0f : 0.0f);
+    return result;
+}
+/* In instances the transformed value, elsewhere the value itself, bit for bit. */
+template <class F, int W> OXRT_INLINE Wide<float3, W> throughInstance(const RayLanes<W>& ray, int64_t offset, const Wide<float3, W>& value, F f) {
+    const Lanes<bool, W> mask = inInstance(ray);
+    if (none(mask))
+        return value;
+    const MatrixLanes<W> matrix = instanceMatrix(ray, offset);
+    return select(mask, f(matrix.m, value), value);
+}
+template <class M, class V> OXRT_INLINE V pointThrough(const M& m, const V& p) {
+    return {m[0] * p.x + m[1] * p.y + m[2] * p.z + m[3], m[4] * p.x + m[5] * p.y + m[6] * p.z + m[7],
+            m[8] * p.x + m[9] * p.y + m[10] * p.z + m[11]};
+}
+template <class M, class V> OXRT_INLINE V vectorThrough(const M& m, const V& v) {
+    return {m[0] * v.x + m[1] * v.y + m[2] * v.z, m[4] * v.x + m[5] * v.y + m[6] * v.z, m[8] * v.x + m[9] * v.y + m[10] * v.z};
+}
+template <class M, class V> OXRT_INLINE V normalThrough(const M& m, const V& n) {
+    return {m[0] * n.x + m[4] * n.y + m[8] * n.z, m[1] * n.x + m[5] * n.y + m[9] * n.z, m[2] * n.x + m[6] * n.y + m[10] * n.z};
+}
+#define OXRT_LANES_TRANSFORM(name, through, matrix)                                                                    \
+    template <int W, class V> OXRT_INLINE Wide<float3, W> name(const RayLanes<W>& ray, const V& value) {               \
+        return throughInstance(ray, OXRT_FIELD_OFFSET(OxrtInstanceView, matrix), Wide<float3, W>(value),               \
+                               [](const auto& m, const auto& x) { return through(m, x); });                            \
+    }
+OXRT_LANES_TRANSFORM(transformPointFromObjectToWorldSpace, pointThrough, objectToWorld)
+OXRT_LANES_TRANSFORM(transformPointFromWorldToObjectSpace, pointThrough, worldToObject)
+OXRT_LANES_TRANSFORM(transformVectorFromObjectToWorldSpace, vectorThrough, objectToWorld)
+OXRT_LANES_TRANSFORM(transformVectorFromWorldToObjectSpace, vectorThrough, worldToObject)
+OXRT_LANES_TRANSFORM(transformNormalFromObjectToWorldSpace, normalThrough, worldToObject)
+OXRT_LANES_TRANSFORM(transformNormalFromWorldToObjectSpace, normalThrough, objectToWorld)
+#undef OXRT_LANES_TRANSFORM
+
+/* ---- the hits ----------------------------------------------------------------------------------------------------------------- */
+
+template <int W> OXRT_INLINE Wide<float2, W> getTriangleBarycentrics(const RayLanes<W>& ray) {
+    return {packetLanes<W>(ray.packet.hit.u), packetLanes<W>(ray.packet.hit.v)};
+}
+template <int W> OXRT_INLINE Lanes<float, W> getCurveParameter(const RayLanes<W>& ray) { return packetLanes<W>(ray.packet.hit.u); }
+
+template <int W, class Places> OXRT_INLINE Wide<float3, W> vertexAt(const Places& places, Lanes<bool, W> mask) {
+    return {gather<float, W>(places, 0, mask), gather<float, W>(places, 4, mask), gather<float, W>(places, 8, mask)};
+}
+template <int W> OXRT_INLINE Wide<TriangleVertices, W> getTriangleVertexData(const RayLanes<W>& ray) {
+    const Lanes<uint32_t, W> primitive = localPrimitive(ray);
+    const Lanes<bool, W> mask = ray.active;
+    Wide<float3, W> corners[3];
+    if (ray.commonGeometry) {
+        const WordPlaces<W> indices = placesIn<uint3, W>(reinterpret_cast<const uint3*>(ray.commonGeometry->indices), primitive);
+        for (int i = 0; i < 3; ++i) {
+            const Lanes<uint32_t, W> vertex = gather<uint32_t, W>(indices, 4 * i, mask);
+            corners[i] = vertexAt<W>(placesIn<float3, W>(reinterpret_cast<const float3*>(ray.commonGeometry->vertices), vertex), mask);
+        }
+    } else {
+        const AddressPlaces<W> geometries = geometryPlaces(ray);
+        const Lanes<uint64_t, W> vertices = gather<uint64_t, W>(geometries, OXRT_FIELD_OFFSET(OxrtGeometry, vertices), mask);
+        const Lanes<uint64_t, W> indices = gather<uint64_t, W>(geometries, OXRT_FIELD_OFFSET(OxrtGeometry, indices), mask);
+        const AddressPlaces<W> triangle{indices + convert<uint64_t>(primitive) * uint64_t(12)};
+        for (int i = 0; i < 3; ++i) {
+            const Lanes<uint64_t, W> vertex = convert<uint64_t>(gather<uint32_t, W>(triangle, 4 * i, mask));
+            corners[i] = vertexAt<W>(AddressPlaces<W>{vertices + vertex * uint64_t(12)}, mask);
+        }
+    }
+    return makeTuple(corners[0], corners[1], corners[2]);
+}
+
+/* Attribute words: the reported ones of a custom primitive, the barycentrics of a built-in one. */
+template <int W> OXRT_INLINE Lanes<uint32_t, W> attributeWord(const RayLanes<W>& ray, int index) {
+    Lanes<uint32_t, W> builtin = 0u;
+    if (index == 0)
+        builtin = floatAsUint(packetLanes<W>(ray.packet.hit.u));
+    else if (index == 1)
+        builtin = floatAsUint(packetLanes<W>(ray.packet.hit.v));
+    return select(getPrimitiveType(ray) == uint32_t(OXRT_PRIMITIVE_CUSTOM), ray.attributes[index], builtin);
+}
+template <int INDEX, int W> OXRT_INLINE Lanes<uint32_t, W> getAttribute(const RayLanes<W>& ray) { return attributeWord(ray, INDEX); }
+
+}  // namespace OXRT_ISA
+}  // namespace oxrt
+
+#endif

@@ -1,0 +1,371 @@
+/* Tracing W rays at once: the query, the records of the hits, the dispatch of programs; and the blocks of a launch.
+ *
+ * `Programs` is what the pipeline emits for each payload class: masked programs over lanes, and as `Scalar` the scalar Programs of
+ * device_trace.h. Traces that need no callback go to Embree as packets, COHERENT where the rays start at one point in about one direction;
+ * with any-hit or intersection programs each lane is traced on its own, with the scalar programs as callbacks (packets with rejecting
+ * callbacks are slower; so are divergent custom primitives).
+ */
+#ifndef OXRT_LANES_TRACE_H
+#define OXRT_LANES_TRACE_H
+
+#include <oxrt/lanes_ray.h>
+
+namespace oxrt {
+inline namespace OXRT_ISA {
+
+/* What the emitted programs over lanes of a payload class override. */
+struct NoLanePrograms {
+    using Scalar = NoPrograms;
+    using Payload = NoPayload;
+};
+
+/* ---- faults ------------------------------------------------------------------------------------------------------------------- */
+
+/* A fault of the lowest lane of the mask, if there is one. */
+template <int W>
+__attribute__((noinline, cold)) void fault(LanesThread<W>& thread, Lanes<bool, W> mask, int32_t code, const char* message, Place place) {
+    if (any(mask))
+        fault(thread.atLane(firstLane(mask)), code, message, place);
+}
+
+/* ---- records ------------------------------------------------------------------------------------------------------------------ */
+
+/* Enters where the records with these indices are, and gives the lanes that have one which this pipeline may run. */
+template <int W>
+OXRT_INLINE Lanes<bool, W> enterRecords(RayLanes<W>& ray, Lanes<bool, W> mask, const uint8_t* section, uint32_t stride, uint32_t count,
+                                        Lanes<uint32_t, W> index) {
+    const OxrtLaunch& launch = *ray.thread->thread->launch;
+    const uint32_t first = index[firstLane(mask)];
+    if (none(mask & (index != first))) {
+        ray.commonRecord = findRecord(launch, section, stride, count, first);
+        return ray.commonRecord ? mask : Lanes<bool, W>(false);
+    }
+    ray.commonRecord = nullptr;
+    ray.records = {reinterpret_cast<const char*>(section), bitCast<int32_t>(index * (stride / 4))};
+    const Lanes<bool, W> present = mask & (index < count);
+    return present & (gather<uint32_t, W>(ray.records, OXRT_FIELD_OFFSET(OxrtRecordHeader, pipelineUid), present) == launch.pipelineUid);
+}
+
+/* The number of the program in `slot` of each lane's record. */
+template <int W> OXRT_INLINE Lanes<int32_t, W> recordPrograms(const RayLanes<W>& ray, Lanes<bool, W> mask, int slot) {
+    if (ray.commonRecord)
+        return ray.commonRecord->programs[slot];
+    return gather<int32_t, W>(ray.records, OXRT_FIELD_OFFSET(OxrtRecordHeader, programs) + 4 * slot, mask);
+}
+
+/* The data of each lane's record. */
+template <class Record, int W> OXRT_INLINE Wide<Record, W> loadRecord(const RayLanes<W>& ray, Lanes<bool, W> mask) {
+    if (ray.commonRecord)
+        return spread<W>(recordData<Record>(*ray.commonRecord));
+    return loadFrom<Record, W>(WordPlaces<W>{ray.records.base + sizeof(OxrtRecordHeader), ray.records.index}, mask);
+}
+
+/* Makes the lanes of `hit` the active ones; notes whether they hit one geometry. */
+template <int W> OXRT_INLINE void enterHits(RayLanes<W>& ray, Lanes<bool, W> hit) {
+    ray.active = hit;
+    const int lane = firstLane(hit);
+    const auto& packet = ray.packet.hit;
+    ray.commonInstance = nullptr;
+    ray.commonGeometry = nullptr;
+    const uint32_t geometry = packet.geomID[lane];
+    const bool hasInstances = ray.root->instances;
+    if (!hasInstances && ray.root->geometryCount == 1)
+        ray.commonGeometry = ray.root->geometries;
+    else if (none(hit & (packetLanes<W>(packet.geomID) != geometry))) {
+        const uint32_t instance = hasInstances ? packet.instID[0][lane] : RTC_INVALID_GEOMETRY_ID;
+        if (instance == RTC_INVALID_GEOMETRY_ID && !hasInstances)
+            ray.commonGeometry = ray.root->geometries + geometry;
+        else if (none(hit & (packetLanes<W>(packet.instID[0]) != instance)) && instance != RTC_INVALID_GEOMETRY_ID) {
+            ray.commonInstance = ray.root->instances + instance;
+            ray.commonGeometry = ray.commonInstance->child->geometries + geometry;
+        }
+    }
+}
+
+/* The lanes whose hit has a record. */
+template <int W> OXRT_INLINE Lanes<bool, W> enterHitRecords(RayLanes<W>& ray) {
+    const OxrtLaunch& launch = *ray.thread->thread->launch;
+    const Lanes<uint32_t, W> offset = instanceField<uint32_t>(ray, OXRT_FIELD_OFFSET(OxrtInstanceView, sbtOffset), 0u);
+    const Lanes<uint32_t, W> index = offset + getSbtGASIndex(ray) * ray.sbtStride + ray.sbtOffset;
+    return enterRecords(ray, ray.active, launch.hitgroupRecords, launch.hitgroupStride, launch.hitgroupCount, index);
+}
+
+/* ---- queries ------------------------------------------------------------------------------------------------------------------ */
+
+template <int W> OXRT_INLINE Lanes<float, W> nextUp(Lanes<float, W> x) {
+    const Lanes<uint32_t, W> bits = floatAsUint(x);
+    const Lanes<uint32_t, W> away = select(x > 0.0f, bits + 1u, bits - 1u);
+    const Lanes<float, W> next = uintAsFloat(select(x == 0.0f, 1u, away));
+    return select(x < __builtin_inff(), next, x);
+}
+template <int W> OXRT_INLINE Lanes<float, W> nextDown(Lanes<float, W> x) { return -nextUp(-x); }
+
+template <class T, int W> OXRT_INLINE void setPacket(T (&values)[W], Lanes<T, W> lanes) { storeLanes<T, W>(values, lanes); }
+template <int W> OXRT_INLINE void setPacket(unsigned (&values)[W], uint32_t value) { storeLanes<uint32_t, W>(values, Lanes<uint32_t, W>(value)); }
+
+/* Whether the active rays start at one point, and go in about one direction: within 25 degrees of the first. */
+template <int W>
+OXRT_INLINE bool areCoherent(Lanes<bool, W> mask, const Wide<float3, W>& origin, const Wide<float3, W>& direction) {
+    const int lane = firstLane(mask);
+    if (any(mask & ((origin.x != origin.x[lane]) | (origin.y != origin.y[lane]) | (origin.z != origin.z[lane]))))
+        return false;
+    const float3 first(direction.x[lane], direction.y[lane], direction.z[lane]);
+    const Lanes<float, W> cosine = dot(direction, first);
+    return none(mask & !(cosine * abs(cosine) > dot(direction, direction) * (0.82f * dot(first, first))));
+}
+
+/* The masked lanes as one packet without callbacks; the lanes that hit something. */
+template <class Flags, bool ANY, int W> OXRT_INLINE Lanes<bool, W> traversePacket(RayLanes<W>& ray, Lanes<bool, W> mask, bool isCoherent) {
+    alignas(4 * W) int valid[W];
+    storeLanes<int32_t, W>(valid, select(mask, int32_t(-1), int32_t(0)));
+    const OxrtServices& services = *ray.thread->thread->launch->services;
+    const unsigned flags = isCoherent ? RTC_RAY_QUERY_FLAG_COHERENT : RTC_RAY_QUERY_FLAG_INCOHERENT;
+    if constexpr (ANY) {
+        RTCOccludedArguments arguments = {flags, RTC_FEATURE_FLAG_ALL, nullptr, nullptr, nullptr, 0.0f};
+        Packet<W>::occluded(services, valid, ray.root->scene, ray.packet, &arguments);
+        return mask & (packetLanes<W>(ray.packet.ray.tfar) < 0.0f);
+    } else {
+        RTCIntersectArguments arguments = {flags, RTC_FEATURE_FLAG_ALL, nullptr, nullptr, nullptr, 0.0f};
+        setPacket<W>(ray.packet.hit.geomID, RTC_INVALID_GEOMETRY_ID);
+        setPacket<W>(ray.packet.hit.instID[0], RTC_INVALID_GEOMETRY_ID);
+        Packet<W>::intersect(services, valid, ray.root->scene, ray.packet, &arguments);
+        ray.t = packetLanes<W>(ray.packet.ray.tfar);
+        return mask & (packetLanes<W>(ray.packet.hit.geomID) != RTC_INVALID_GEOMETRY_ID);
+    }
+}
+
+/* One lane's ray for the scalar query. */
+template <int W> OXRT_INLINE void scalarRay(Ray& one, const RayLanes<W>& ray, void* payload, int lane) {
+    const auto& packet = ray.packet.ray;
+    one.thread = &ray.thread->atLane(lane);
+    one.payload = payload;
+    one.root = ray.root;
+    one.origin = {packet.org_x[lane], packet.org_y[lane], packet.org_z[lane]};
+    one.direction = {packet.dir_x[lane], packet.dir_y[lane], packet.dir_z[lane]};
+    one.tmin = ray.tmin[lane];
+    one.tmax = ray.tmax[lane];
+    one.time = packet.time[lane];
+    one.mask = ray.mask[lane];
+    one.flags = ray.flags;
+    one.sbtOffset = ray.sbtOffset[lane];
+    one.sbtStride = ray.sbtStride[lane];
+    one.missIndex = ray.missIndex[lane];
+}
+
+/* Enters the closest hit of one lane. */
+template <int W> OXRT_INLINE void enterScalarHit(RayLanes<W>& ray, const Ray& one, int lane) {
+    auto& hit = ray.packet.hit;
+    hit.Ng_x[lane] = one.normal.x;
+    hit.Ng_y[lane] = one.normal.y;
+    hit.Ng_z[lane] = one.normal.z;
+    hit.u[lane] = one.u;
+    hit.v[lane] = one.v;
+    hit.primID[lane] = one.primitive;
+    const OxrtTraversableView& holder = one.instance ? *one.instance->child : *one.root;
+    hit.geomID[lane] = unsigned(one.geometry - holder.geometries);
+    hit.instID[0][lane] = one.instance ? unsigned(one.instance - one.root->instances) : RTC_INVALID_GEOMETRY_ID;
+    ray.t.set(lane, one.t);
+    ray.kind.set(lane, one.kind);
+    for (int i = 0; i < 8; ++i)
+        ray.attributes[i].set(lane, one.attributes[i]);
+}
+
+/* The masked lanes one after the other, with the scalar programs as callbacks; the lanes that hit something. */
+template <class Programs, class Flags, bool ANY, int W>
+__attribute__((noinline)) Lanes<bool, W> traverseLanes(RayLanes<W>& ray, Lanes<bool, W> mask, typename Programs::Payload& payload) {
+    using Scalar = typename Programs::Scalar;
+    uint32_t hits = 0;
+    uint32_t thrown = 0;
+    eachLane(mask, [&](int lane) {
+        typename Scalar::Payload own;
+        if constexpr (!isSame<typename Scalar::Payload, NoPayload>)
+            extractLane(own, payload, lane);
+        Ray one;
+        scalarRay(one, ray, &own, lane);
+        bool isHit;
+        if constexpr (ANY)
+            isHit = traverseAny<Scalar, Flags>(one);
+        else
+            isHit = traverseClosest<Scalar, Flags>(one);
+        if constexpr (!isSame<typename Scalar::Payload, NoPayload>)
+            insertLane(payload, own, lane);
+        if constexpr (Scalar::mayThrow)
+            if (one.thread->exceptionPending) {
+                thrown |= 1u << lane;
+                takeException(*ray.thread, lane);
+                return;
+            }
+        if (isHit) {
+            hits |= 1u << lane;
+            if constexpr (!ANY)
+                enterScalarHit(ray, one, lane);
+        }
+    });
+    ray.thread->thrown |= Lanes<bool, W>::ofBits(thrown);
+    return Lanes<bool, W>::ofBits(hits);
+}
+
+/* Moves the exception that a scalar program threw to its lane. */
+template <int W> void takeException(LanesThread<W>& thread, int lane) {
+    OxrtThread& scalar = *thread.thread;
+    thread.exceptionCode.set(lane, scalar.exceptionCode);
+    for (int i = 0; i < 8; ++i)
+        thread.exceptionDetails[i].set(lane, scalar.exceptionDetails[i]);
+    scalar.exceptionPending = 0;
+}
+
+/* ---- trace -------------------------------------------------------------------------------------------------------------------- */
+
+template <class Programs, class Flags, bool ANY, int W>
+OXRT_INLINE Lanes<bool, W> traverse(RayLanes<W>& ray, Lanes<bool, W> mask, typename Programs::Payload& payload, bool isCoherent) {
+    using Scalar = typename Programs::Scalar;
+    if constexpr (!hasCallbacks<Scalar, Flags>)
+        return traversePacket<Flags, ANY>(ray, mask, isCoherent);
+    else {
+        constexpr bool onlyIntersection = !FlagTraits<Flags>::mayCull && !(Scalar::hasAnyHit && FlagTraits<Flags>::mayRunAnyHit);
+        if (onlyIntersection && !(ray.root->needs & OXRT_SCENE_HAS_CUSTOM))
+            return traversePacket<Flags, ANY>(ray, mask, isCoherent);
+        return traverseLanes<Programs, Flags, ANY>(ray, mask, payload);
+    }
+}
+
+template <class Programs, int W> OXRT_INLINE void runMisses(RayLanes<W>& ray, Lanes<bool, W> mask, typename Programs::Payload& payload, Place place) {
+    const OxrtLaunch& launch = *ray.thread->thread->launch;
+    ray.t = ray.tmax;
+    ray.active = mask;
+    const Lanes<bool, W> found = enterRecords(ray, mask, launch.missRecords, launch.missStride, launch.missCount, ray.missIndex);
+    if constexpr (Programs::Scalar::isValidated)
+        fault(*ray.thread, mask & (ray.missIndex >= launch.missCount), OXRT_FAULT_MISS_SBT,
+              "miss_sbt_index is not below the number of miss records", place);
+    if (any(found))
+        Programs::miss(ray, found, payload);
+}
+
+template <class Programs, int W> OXRT_INLINE void runClosestHits(RayLanes<W>& ray, typename Programs::Payload& payload, Place place) {
+    const Lanes<bool, W> found = enterHitRecords(ray);
+    if constexpr (Programs::Scalar::isValidated)
+        fault(*ray.thread, without(ray.active, found), OXRT_FAULT_HIT_SBT, "the hit needs a record behind the end of the hit group records", place);
+    if (any(found)) {
+        ray.active = found;
+        Programs::closestHit(ray, found, payload);
+    }
+}
+
+/* Traversal, then the closest-hit and miss programs of the lanes. */
+template <class Programs, class Flags, int W>
+OXRT_INLINE void traceNow(RayLanes<W>& ray, Lanes<bool, W> mask, typename Programs::Payload& payload, bool isCoherent, Place place) {
+    using Scalar = typename Programs::Scalar;
+    using Known = FlagTraits<Flags>;
+    constexpr bool runsClosestHit = Scalar::hasClosestHit && Known::mayRunClosestHit;
+    Lanes<bool, W> hit = false;
+    const Lanes<bool, W> traced = mask & (ray.tmin <= ray.tmax);
+    if (ray.root && ray.root->scene && any(traced)) {
+        hit = traverse<Programs, Flags, Known::alwaysTerminates && !runsClosestHit>(ray, traced, payload, isCoherent);
+        if constexpr (Scalar::mayThrow)
+            mask = without(mask, ray.thread->thrown);
+    }
+    if constexpr (runsClosestHit)
+        if (any(hit) && !(ray.flags & RAY_DISABLE_CLOSESTHIT)) {
+            enterHits(ray, hit);
+            runClosestHits<Programs>(ray, payload, place);
+        }
+    if constexpr (Scalar::hasMiss) {
+        const Lanes<bool, W> missed = without(mask, hit);
+        if (any(missed))
+            runMisses<Programs>(ray, missed, payload, place);
+    }
+}
+
+template <int W> OXRT_INLINE void checkRays(const RayLanes<W>& ray, Lanes<bool, W> mask, uint64_t handle, Place place) {
+    eachLane(mask, [&](int lane) {
+        Ray one;
+        scalarRay(one, ray, nullptr, lane);
+        if (!isValidRay(one))
+            faultWithValues(*one.thread, OXRT_FAULT_INVALID_RAY, "invalid ray (origin, direction, tmin, tmax)", place, one.origin.x, one.origin.y,
+                            one.origin.z, one.direction.x, one.direction.y, one.direction.z, one.tmin, one.tmax);
+        else if (!ray.root && handle != 0)
+            fault(*one.thread, OXRT_FAULT_INVALID_TRAVERSABLE, "the handle names no traversable of this context, or one that was destroyed", place);
+    });
+}
+
+/* The trace of the masked lanes. The handle and the flags are the same for all of them. */
+template <class Programs, class Flags, int W>
+OXRT_INLINE void trace(LanesThread<W>& thread, Lanes<bool, W> mask, uint64_t handle, const Wide<float3, W>& origin, const Wide<float3, W>& direction,
+                       Wide<float, W> tmin, Wide<float, W> tmax, Wide<float, W> time, Wide<uint32_t, W> visibility, Flags flags,
+                       Wide<uint32_t, W> sbtOffset, Wide<uint32_t, W> sbtStride, Wide<uint32_t, W> missIndex,
+                       typename Programs::Payload& payload, Place place = Place::current()) {
+    using Scalar = typename Programs::Scalar;
+    if (none(mask) || !enterTrace<Scalar>(*thread.thread, place))
+        return;
+    RayLanes<W> ray;
+    ray.thread = &thread;
+    ray.root = findTraversable(*thread.thread->launch, handle);
+    auto& packet = ray.packet.ray;
+    setPacket(packet.org_x, origin.x);
+    setPacket(packet.org_y, origin.y);
+    setPacket(packet.org_z, origin.z);
+    setPacket(packet.tnear, nextUp(tmin));
+    setPacket(packet.dir_x, direction.x);
+    setPacket(packet.dir_y, direction.y);
+    setPacket(packet.dir_z, direction.z);
+    setPacket(packet.time, Scalar::usesTime ? time : Lanes<float, W>(0.0f));
+    setPacket(packet.tfar, nextDown(tmax));
+    ray.mask = visibility & 0xFFu;
+    setPacket(packet.mask, ray.mask);
+    setPacket<W>(packet.flags, 0u);
+    ray.tmin = tmin;
+    ray.tmax = tmax;
+    ray.flags = flags & 0xFFFF;
+    ray.sbtOffset = (sbtOffset | (sbtStride >> 4u)) & 15u;
+    ray.sbtStride = sbtStride & 15u;
+    ray.missIndex = missIndex;
+    if constexpr (Scalar::isValidated)
+        checkRays(ray, mask, handle, place);
+    traceNow<Programs, Flags>(ray, mask, payload, areCoherent(mask, origin, direction), place);
+    leaveTrace<Scalar>(*thread.thread);
+}
+
+/* ---- groups of equal lanes ---------------------------------------------------------------------------------------------------- */
+
+/* f(value, lanes that have it) for each distinct value among the lanes of the mask. */
+template <class T, int W, class F> OXRT_INLINE void eachValue(Lanes<bool, W> mask, Lanes<T, W> values, F f) {
+    while (any(mask)) {
+        const T value = values[firstLane(mask)];
+        const Lanes<bool, W> equal = mask & (values == value);
+        f(value, equal);
+        mask = without(mask, equal);
+    }
+}
+template <class T, int W, class F> requires Scalar<T> OXRT_INLINE void eachValue(Lanes<bool, W> mask, T value, F f) { f(value, mask); }
+
+/* ---- a tile of launch indices ------------------------------------------------------------------------------------------------- */
+
+/* Runs the ray generation program on blocks of W indices: squarish in two dimensions, strips in one; lanes outside the tile are masked. */
+template <int W, class Raygen> OXRT_INLINE void runBlocks(OxrtThread& scalar, const OxrtTile& tile, Raygen raygen) {
+    const uint32_t columns = tile.end[0] - tile.begin[0];
+    const uint32_t rows = tile.end[1] - tile.begin[1];
+    const uint32_t shift = rows <= 1 ? (W == 16 ? 4 : 3) : columns >= 4 ? 2 : columns >= 2 ? 1 : 0;
+    const uint32_t width = 1u << shift;
+    const uint32_t height = W >> shift;
+    const Lanes<uint32_t, W> lane = laneIndex<W>();
+    const Lanes<uint32_t, W> dx = lane & (width - 1);
+    const Lanes<uint32_t, W> dy = lane >> shift;
+    LanesThread<W> thread;
+    thread.thread = &scalar;
+    for (uint32_t z = tile.begin[2]; z < tile.end[2]; ++z)
+        for (uint32_t y = tile.begin[1]; y < tile.end[1]; y += height)
+            for (uint32_t x = tile.begin[0]; x < tile.end[0]; x += width) {
+                if (isCancelled(scalar))
+                    return;
+                thread.index[0] = dx + x;
+                thread.index[1] = dy + y;
+                thread.index[2] = z;
+                thread.thrown = false;
+                raygen(thread, (dx < tile.end[0] - x) & (dy < tile.end[1] - y));
+            }
+}
+
+}  // namespace OXRT_ISA
+}  // namespace oxrt
+
+#endif
