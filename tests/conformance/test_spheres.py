@@ -1,0 +1,78 @@
+"""Area O: spheres."""
+
+from __future__ import annotations
+
+import brute_force
+import numpy as np
+import pytest
+from harness import Harness
+from scenes import calls, closest, gas, hitgroup, missed, offsets, ray, require, trace
+
+IGNORE = 1
+SPHERE_KIND = 138
+
+
+def spheres(centers: object, radii: object, flags: tuple[int, ...] = (0,), **more: object) -> dict[str, object]:
+    """A sphere input."""
+    return {"type": "spheres", "vertices": [np.asarray(centers, np.float32).ravel().tolist()],
+            "radii": [np.asarray(radii, np.float32).ravel().tolist()], "flags": list(flags), "numSbtRecords": len(flags), **more}
+
+
+@pytest.fixture(autouse=True)
+def _spheres() -> None:
+    require("spheres")
+
+
+def shoot(harness: Harness, scene: list[dict[str, object]], *rays: dict[str, object], mode: int = 0, records: int = 1) -> list[object]:
+    """Trace with sphere hit groups."""
+    return trace(harness, scene, rays, [hitgroup(record, kind="sphere", anyhit_mode=mode) for record in range(records)])
+
+
+def test_T209_a_sphere_from_outside(harness: Harness) -> None:
+    (result,) = shoot(harness, [gas(spheres([(0, 0, 0)], [1]))], ray((0, 0, 3)))
+    hit = closest(result)
+    assert (hit["tmax"], hit["hitKind"], hit["ptype"], hit["front"]) == (2.0, SPHERE_KIND, "0x2506", 1)
+    assert hit["vertexData"] == [0, 0, 0, 1]  # T215
+
+
+def test_T210_nothing_from_inside(harness: Harness) -> None:
+    results = shoot(harness, [gas(spheres([(0, 0, 0)], [1]))], ray((0, 0, 0)), ray((0, 0, 3), tmin=2.5), ray((0, 0, 3), tmin=2.0))
+    assert [missed(result) for result in results] == [True, True, True]
+
+
+def test_T211_an_ignored_entry_offers_no_exit(harness: Harness) -> None:
+    (result,) = shoot(harness, [gas(spheres([(0, 0, 0)], [1], (2,)))], ray((0, 0, 3)), mode=IGNORE)
+    assert missed(result)
+    assert [event["tmax"] for event in calls(result)] == [2.0]
+
+
+def test_T212_one_radius_for_all(harness: Harness) -> None:
+    centers = [(3 * i, 0, 0) for i in range(20)]
+    results = shoot(harness, [gas(spheres(centers, [1], singleRadius=True))], *(ray((3 * i, 0, 3)) for i in range(20)))
+    assert [(closest(result)["prim"], closest(result)["tmax"]) for result in results] == [(i, 2.0) for i in range(20)]
+
+
+def test_T213_records_by_sphere(harness: Harness) -> None:
+    scene = [gas(spheres([(0, 0, 0), (5, 0, 0)], [1, 1], (0, 0), **offsets([1, 0])))]
+    results = shoot(harness, scene, ray((0, 0, 3)), ray((5, 0, 3)), records=2)
+    assert [closest(result)["rec"] for result in results] == [1, 0]
+
+
+def test_T214_strange_radii(harness: Harness) -> None:
+    # Recorded: 11_spheres; a negative radius acts as its absolute value, zero is never hit.
+    scene = [gas(spheres([(0, 0, 0), (5, 0, 0)], [-1, 0]))]
+    results = shoot(harness, scene, ray((0, 0, 3)), ray((5, 0, 3)))
+    assert [missed(result) for result in results] == [False, True]
+
+
+def test_random_spheres_agree_with_brute_force(harness: Harness) -> None:
+    random = np.random.default_rng(209)
+    scene = [gas(spheres(random.uniform(-3, 3, (40, 3)), random.uniform(0.1, 1.0, 40)))]
+    origins, ends = random.uniform(-6, 6, (300, 3)), random.uniform(-3, 3, (300, 3))
+    rays = [ray(origin, direction) for origin, direction in zip(origins, ends - origins, strict=True)]
+    for result, one in zip(shoot(harness, scene, *rays), rays, strict=True):
+        hits = brute_force.scene_candidates(scene, one["in"])
+        assert missed(result) == (not hits)
+        if hits:
+            assert closest(result)["prim"] == hits[0].primitive
+            assert closest(result)["tmax"] == pytest.approx(hits[0].t, rel=1e-3)
