@@ -1,0 +1,165 @@
+"""Each example runs as its README says, in a process of its own, and its picture shows what it should."""
+
+from __future__ import annotations
+
+import importlib.util
+import re
+import subprocess
+import sys
+from pathlib import Path
+from types import ModuleType
+
+import numpy as np
+import pytest
+
+import optixc as ox
+
+EXAMPLES = Path(__file__).resolve().parents[2] / "examples"
+FOLDERS = sorted(folder.name for folder in EXAMPLES.iterdir() if re.fullmatch(r"\d\d_\w+", folder.name))
+
+
+def run(example: str, *arguments: object) -> str:
+    """What a host program printed; fails with its errors."""
+    command = [sys.executable, EXAMPLES / example / "host.py", *map(str, arguments)]
+    done = subprocess.run(command, capture_output=True, text=True, check=False, timeout=300)
+    assert done.returncode == 0, done.stdout + done.stderr
+    assert done.stderr == "", "progress bars stay silent when the output is no terminal"
+    return done.stdout
+
+
+def linear(path: Path) -> np.ndarray:
+    """A picture's colours, decoded to linear floats."""
+    values = ox.read_image(path)[:, :, :3] / 255.0
+    return np.where(values <= 0.04045, values / 12.92, ((values + 0.055) / 1.055) ** 2.4)
+
+
+def source(example: str, name: str) -> ModuleType:
+    """A module of an example that needs no others."""
+    specification = importlib.util.spec_from_file_location(f"{example}_{name}", EXAMPLES / example / f"{name}.py")
+    assert specification is not None and specification.loader is not None
+    module = importlib.util.module_from_spec(specification)
+    sys.modules[specification.name] = module
+    specification.loader.exec_module(module)
+    return module
+
+
+@pytest.mark.parametrize("folder", FOLDERS)
+def test_every_example_is_complete(folder: str) -> None:
+    readme = (EXAMPLES / folder / "README.md").read_text()
+    assert (EXAMPLES / folder / "shader.py").is_file()
+    assert (EXAMPLES / folder / "host.py").is_file() or (EXAMPLES / folder / "host.cpp").is_file()
+    for picture in re.findall(r"!\[.*?\]\((.*?)\)", readme):
+        assert (EXAMPLES / folder / picture).is_file(), picture
+    assert f"]({folder})" in (EXAMPLES / "README.md").read_text()
+
+
+def test_gradient(tmp_path: Path) -> None:
+    run("01_gradient", "--size", 64, "--output", tmp_path / "a.exr")
+    image = ox.read_image(tmp_path / "a.exr")
+    centers = ((np.arange(64) + 0.5) / 64).astype(np.float32)
+    np.testing.assert_array_equal(image[:, :, 0], np.broadcast_to(centers, (64, 64)))
+    np.testing.assert_array_equal(image[:, :, 1], np.broadcast_to(1.0 - centers[:, np.newaxis], (64, 64)))
+
+
+def test_triangle(tmp_path: Path) -> None:
+    run("02_triangle", "--size", 128, "--output", tmp_path / "a.exr")
+    image = ox.read_image(tmp_path / "a.exr")[:, :, :3]
+    # Where the ray through each pixel's centre meets the plane z = 0, in closed form
+    x = 1.7 * 0.4142 * (2.0 * (np.arange(128) + 0.5) / 128 - 1.0)
+    x, y = np.meshgrid(x, -x)
+    top = y + 0.5
+    right = x + 0.5 - 0.5 * top
+    inside = (top > 0) & (right > 0) & (right + top < 1)
+    expected = np.where(inside[..., np.newaxis], np.stack([1.0 - right - top, right, top], -1), [0.02, 0.03, 0.05])
+    border = np.minimum(np.minimum(np.abs(top), np.abs(right)), np.abs(1.0 - right - top)) < 1e-5
+    np.testing.assert_allclose(image[~border], expected[~border], atol=1e-5)
+    assert inside.sum() > 3000
+
+
+def test_mesh_viewer_shows_mesh_ground_and_sky(tmp_path: Path) -> None:
+    output = run("03_mesh_viewer", "--width", 96, "--height", 64, "--samples", 4, "--output", tmp_path / "a.png")
+    assert "131072 triangles" in output
+    image = linear(tmp_path / "a.png")
+    assert image.shape == (64, 96, 3)
+    saturation = image.max(axis=2) - image.min(axis=2)
+    assert saturation[16:48, 32:64].max() > 0.3, "the knot is colourful"
+    ground = image[-4:]
+    assert (ground.max(axis=2) - ground.min(axis=2)).max() < 0.3, "the ground is grey"
+
+
+def test_mesh_viewer_reads_files(tmp_path: Path) -> None:
+    pytest.importorskip("trimesh")
+    (tmp_path / "a.obj").write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n")
+    output = run("03_mesh_viewer", tmp_path / "a.obj", "--width", 32, "--height", 32, "--samples", 1, "--output", tmp_path / "a.png")
+    assert output.startswith("4 triangles")
+
+
+def test_ambient_occlusion_agrees_with_an_independent_estimate(tmp_path: Path) -> None:
+    pytest.importorskip("embreex")
+    size, count = 48, 64
+    run("04_ambient_occlusion", "--size", size, "--samples", 8, "--occlusion-rays", 8, "--output", tmp_path / "a.exr")
+    image = ox.read_image(tmp_path / "a.exr")[:, :, 0]
+    expected = reference_occlusion(source("04_ambient_occlusion", "courtyard"), size, count)
+    # Both are means of 64 rays per pixel of values in [0, 1], over 2304 pixels: standard error of the difference below 0.5 / 64**0.5 *
+    # 2**0.5 / 48 = 0.0018; pixels differ only where one of them straddles an edge
+    assert abs(image.mean() - expected.mean()) < 4 * 0.0019
+    assert np.percentile(np.abs(image - expected), 90) < 4 * 0.5 * (2.0 / count) ** 0.5
+
+
+def reference_occlusion(courtyard: ModuleType, size: int, count: int) -> np.ndarray:
+    """The courtyard through embreex and numpy: one jittered primary ray and one occlusion ray per sample."""
+    from embreex.mesh_construction import TriangleMesh  # noqa: PLC0415 - optional
+    from embreex.rtcore_scene import EmbreeScene  # noqa: PLC0415 - optional
+
+    random = np.random.default_rng(3)
+    vertices, indices = courtyard.build()
+    corners = vertices[indices]
+    scene = EmbreeScene()
+    TriangleMesh(scene, corners)
+    normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    normals /= np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), 1e-30)
+
+    w = np.subtract(courtyard.TARGET, courtyard.EYE)
+    right = np.cross(w, [0.0, 1.0, 0.0])
+    right /= np.linalg.norm(right)
+    up = np.cross(right, w) / np.linalg.norm(w)
+    half = np.linalg.norm(w) * np.tan(np.radians(0.5 * courtyard.VERTICAL_FOV))
+    open_share = np.zeros((size, size))
+    origins = np.tile(np.array(courtyard.EYE, np.float32), (size * size, 1))
+    for _ in range(count):
+        x = 2.0 * (np.arange(size) + random.random((size, size))) / size - 1.0
+        y = 1.0 - 2.0 * (np.arange(size)[:, np.newaxis] + random.random((size, size))) / size
+        directions = (x[..., np.newaxis] * half * right + y[..., np.newaxis] * half * up + w).reshape(-1, 3)
+        found = scene.run(origins, directions.astype(np.float32), output=True)
+        hit = found["primID"] >= 0
+        n = normals[np.maximum(found["primID"], 0)]
+        n = np.where((n * directions).sum(axis=1, keepdims=True) > 0.0, -n, n)
+        points = (origins + found["tfar"][:, np.newaxis] * directions + 1e-4 * n).astype(np.float32)
+        points[~hit] = 0.0
+        scattered = random.normal(size=points.shape)
+        scattered = n + scattered / np.linalg.norm(scattered, axis=1, keepdims=True)
+        scattered /= np.linalg.norm(scattered, axis=1, keepdims=True)
+        blocked = scene.run(points, scattered.astype(np.float32), output=True)
+        free = ~hit | (blocked["primID"] < 0) | (blocked["tfar"] > courtyard.RADIUS)
+        open_share += free.reshape(size, size) / count
+    return open_share
+
+
+def test_ambient_occlusion_says_what_is_missing(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("OXRT_SCENES_DIR", str(tmp_path))
+    command = [sys.executable, EXAMPLES / "04_ambient_occlusion" / "host.py", "sibenik"]
+    done = subprocess.run(command, capture_output=True, text=True, check=False)
+    assert done.returncode == 1
+    assert "OXRT_SCENES_DIR" in done.stderr
+    assert "Traceback" not in done.stderr
+
+
+def test_statistics_are_printed(tmp_path: Path) -> None:
+    output = run("04_ambient_occlusion", "--size", 32, "--samples", 1, "--output", tmp_path / "a.png")
+    for word in ("compile", "build", "Mrays/s", "threads", "memory", str(tmp_path / "a.png")):
+        assert word in output
+
+
+def test_collision_queries_agree_with_brute_force() -> None:
+    output = run("06_collision_queries", "--rays", 200, "--observers", 128, "--points", 512, "--steps", 60)
+    assert "all answers agree" in output
