@@ -285,7 +285,7 @@ def _construct(construct: Construct) -> Iterator[str]:
             if tuple(part.type for part in construct.arguments) != construct.type.items:
                 yield f"{construct.type} made of other types"
         case FixedArray():
-            if len(construct.arguments) != construct.type.size:
+            if len(construct.arguments) not in (0, construct.type.size):
                 yield f"{construct.type} made of {len(construct.arguments)} elements"
         case Matrix():
             pass

@@ -1,0 +1,135 @@
+"""From an annotation to a type: `float3`, `ox.Array2[float4]`, `ox.FixedArray[int, 8]`, `tuple[float, bool]`, classes, enums, strings.
+
+Reports OX201 where something else stands there.
+"""
+
+from __future__ import annotations
+
+import ast
+
+from optixc.frontend import builtin_names as names
+from optixc.frontend.declarations import Declarations
+from optixc.frontend.fold import FoldError, constant_of
+from optixc.frontend.resolve_name import resolve_dotted
+from optixc.frontend.source_file import Diagnostics
+from optixc.frontend.symbols import BuiltinName, ConstantSymbol, EnumSymbol, PythonName, SkippedName, StructSymbol, Symbol
+from optixc.ir import types as t
+
+MAX_FIXED_ELEMENTS = 65536
+_REMEDIES = {
+    "list": "ox.FixedArray[T, N] or ox.Array[T]",
+    "str": "text is no value in shaders",
+    "dict": "an `@ox.struct` class",
+    "object": "leave the parameter without annotation",
+}
+
+
+def resolve_type(scope: Declarations, node: ast.expr, diagnostics: Diagnostics) -> t.Type | None:
+    """The type that an annotation names, or None after a diagnostic."""
+    match node:
+        case ast.Constant(value=None):
+            return t.VOID
+        case ast.Constant(value=str() as text):
+            return _resolve_text(scope, node, text, diagnostics)
+        case ast.Name() | ast.Attribute():
+            symbol = resolve_dotted(scope, node)
+            found = type_of_symbol(scope, symbol, diagnostics)
+            if found is None:
+                _report_no_type(scope, node, symbol, diagnostics)
+            return found
+        case ast.Subscript(value=base, slice=index):
+            symbol = resolve_dotted(scope, base)
+            match symbol:
+                case BuiltinName(name="tuple"):
+                    return _resolve_tuple(scope, index, diagnostics)
+                case BuiltinName(name="FixedArray"):
+                    return _resolve_fixed_array(scope, node, index, diagnostics)
+                case BuiltinName(name=name) if name in names.ARRAY_RANKS:
+                    return _resolve_array(scope, index, names.ARRAY_RANKS[name], diagnostics)
+                case PythonName(module="typing", name="Final" | "Annotated" | "ClassVar"):
+                    first = index.elts[0] if isinstance(index, ast.Tuple) and index.elts else index
+                    return resolve_type(scope, first, diagnostics)
+            _report_no_type(scope, node, symbol, diagnostics)
+            return None
+    _report_no_type(scope, node, None, diagnostics)
+    return None
+
+
+def type_of_symbol(scope: Declarations, symbol: Symbol | None, diagnostics: Diagnostics) -> t.Type | None:
+    """The type that a symbol is, or None if it is no type."""
+    match symbol:
+        case BuiltinName(name=name):
+            return names.TYPE_NAMES.get(name)
+        case StructSymbol(type=type_):
+            return type_
+        case EnumSymbol():
+            return t.INT32
+        case ConstantSymbol(node=ast.Subscript() as inner, scope=owner):
+            return resolve_type(owner, inner, diagnostics)
+    return None
+
+
+def _resolve_text(scope: Declarations, node: ast.expr, text: str, diagnostics: Diagnostics) -> t.Type | None:
+    try:
+        inner = ast.parse(text.strip(), mode="eval").body
+    except (SyntaxError, ValueError, RecursionError, MemoryError):
+        diagnostics.add(scope.file.source, "OX201", node, "a type is expected, this text is none")
+        return None
+    for child in ast.walk(inner):
+        ast.copy_location(child, node)
+    return resolve_type(scope, inner, diagnostics)
+
+
+def _report_no_type(scope: Declarations, node: ast.expr, symbol: Symbol | None, diagnostics: Diagnostics) -> None:
+    text = ast.unparse(node)
+    note = _REMEDIES.get(text.split("[")[0], "expected e.g. float, float3, ox.Array2[float4] or an `@ox.struct` class")
+    if isinstance(symbol, SkippedName):
+        message = f"`{text}` is no type of shaders: it is {symbol.reason}"
+    elif isinstance(symbol, BuiltinName) and symbol.name in names.ARRAY_RANKS:
+        message, note = f"`{text}` needs its element type", f"write {text}[float3] or the like"
+    elif isinstance(symbol, BuiltinName) and symbol.name == "FixedArray":
+        message, note = f"`{text}` needs element type and size", f"write {text}[float, 8] or the like"
+    else:
+        message = f"`{text}` is no type"
+    diagnostics.add(scope.file.source, "OX201", node, message, note)
+
+
+def _resolve_tuple(scope: Declarations, index: ast.expr, diagnostics: Diagnostics) -> t.Type | None:
+    elements = index.elts if isinstance(index, ast.Tuple) else [index]
+    items = [resolve_type(scope, element, diagnostics) for element in elements]
+    known = [item for item in items if item is not None]
+    return t.Tuple(tuple(known)) if len(known) == len(items) else None
+
+
+def _resolve_fixed_array(scope: Declarations, node: ast.expr, index: ast.expr, diagnostics: Diagnostics) -> t.Type | None:
+    source = scope.file.source
+    if not (isinstance(index, ast.Tuple) and len(index.elts) == 2):
+        diagnostics.add(source, "OX201", node, "FixedArray needs an element type and a size", "write ox.FixedArray[float, 8] or the like")
+        return None
+    element = resolve_type(scope, index.elts[0], diagnostics)
+    try:
+        size = constant_of(scope, index.elts[1])
+    except FoldError as error:
+        diagnostics.add(source, error.code, index.elts[1], str(error))
+        return None
+    if not isinstance(size, int) or isinstance(size, bool) or not 1 <= size <= MAX_FIXED_ELEMENTS:
+        message = f"the size of a FixedArray is an integer constant from 1 to {MAX_FIXED_ELEMENTS}"
+        diagnostics.add(source, "OX201", index.elts[1], message)
+        return None
+    if isinstance(element, t.Array | t.Tuple | t.Void):
+        diagnostics.add(source, "OX201", index.elts[0], f"a FixedArray cannot hold {element}", "numbers, vectors, matrices or structs")
+        return None
+    return t.FixedArray(element, size) if element is not None else None
+
+
+def _resolve_array(scope: Declarations, index: ast.expr, rank: int, diagnostics: Diagnostics) -> t.Type | None:
+    element = resolve_type(scope, index, diagnostics)
+    if element is None:
+        return None
+    if not isinstance(element, t.Scalar | t.Vector | t.Matrix | t.Struct | t.Traversable | t.Texture | t.FixedArray):
+        diagnostics.add(scope.file.source, "OX201", index, f"an array cannot hold {element}", "numbers, vectors, matrices or structs")
+        return None
+    if isinstance(element, t.Struct) and element.kind is not t.StructKind.PLAIN:
+        diagnostics.add(scope.file.source, "OX201", index, f"an array cannot hold the {element.kind.value} class {element}")
+        return None
+    return t.Array(element, rank)
