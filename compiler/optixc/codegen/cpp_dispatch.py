@@ -149,8 +149,8 @@ class Dispatch:
             with self._writer.block(f"switch (record ? record->programs[{slot}] : OXRT_NO_PROGRAM)"):
                 for program in callables_with(self._pipeline, signature):
                     call = f"{self._signatures.function(program.name)}({', '.join(self._callable_arguments(program))})"
-                    is_void = isinstance(signature.result, Void)
-                    self._writer.line(f"case {self.number(program)}: {call}; return;" if is_void else f"case {self.number(program)}: return {call};")
+                    run = f"{call}; return;" if isinstance(signature.result, Void) else f"return {call};"
+                    self._writer.line(f"case {self.number(program)}: {run}")
                 self._writer.line(f"default: return{result};")
         self._writer.line()
 

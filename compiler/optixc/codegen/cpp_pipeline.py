@@ -71,7 +71,9 @@ class PipelineFile:
             self._writer.line(f"   {feature.describe()}")
         self._writer.line("*/")
         self._writer.line("#include <oxrt/device.h>")
-        if self._features.uses_textures:
+        if self._features.has("hit objects"):
+            self._writer.line("#include <oxrt/device_hit_object.h>")
+        if self._features.has("textures"):
             self._writer.line("#include <oxrt/device_texture.h>")
         self._writer.line()
 
@@ -99,11 +101,13 @@ class PipelineFile:
         throws = self._signatures.needs(program.name).throws
         call = self._call(program, "thread->launch->raygenRecord")
         capture = "thread" if throws or "thread" in call else ""
-        with self._writer.block(f"void run_{self._signatures.function(program.name)}(OxrtThread* thread, const OxrtTile* tile)"):
-            with self._writer.block(f"oxrt::forEachIndex(*thread, *tile, [{capture}]", tail="});"):
-                self._writer.line(f"{call};")
-                if throws:
-                    self._run_exception()
+        with (
+            self._writer.block(f"void run_{self._signatures.function(program.name)}(OxrtThread* thread, const OxrtTile* tile)"),
+            self._writer.block(f"oxrt::forEachIndex(*thread, *tile, [{capture}]", tail="});"),
+        ):
+            self._writer.line(f"{call};")
+            if throws:
+                self._run_exception()
         self._writer.line()
 
     def _run_exception(self) -> None:

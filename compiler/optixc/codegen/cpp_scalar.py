@@ -76,7 +76,7 @@ class ScalarFunction:
         if needs.params:
             params = self._types.struct(self._calls.params_struct())
             self._writer.line(f"const {params}& {names.params} = oxrt::launchParams<{params}>({names.thread});")
-        if needs.hit_object:
+        if needs.hit_object and self._function.kind is not None:
             self._writer.line(f"oxrt::HitObject {names.hit_object};")
 
     def _unread(self, local: Local) -> str:
@@ -225,6 +225,8 @@ class ScalarFunction:
         if call is None:
             return
         self._writer.line(f"{self._target(statement, target)} = {call};" if target is not None else f"{call};", statement.span)
+        if isinstance(statement, Trace) and statement.name == "trace" and self._signatures.needs(self._function.name).hit_object:
+            self._writer.line(f"oxrt::makeNopHitObject({self._names.hit_object});", statement.span)
         condition = self._calls.ending(statement)
         if condition is None:
             return

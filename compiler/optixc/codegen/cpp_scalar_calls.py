@@ -79,7 +79,7 @@ class ScalarCalls:
     # ---- texts ---------------------------------------------------------------------------------------------------------------
 
     def helper(self, statement: CallHelper) -> str:
-        hidden = self._signatures.hidden_argument(statement.function, self._names)
+        hidden = self._signatures.hidden_arguments(statement.function, self._names)
         arguments = [self._argument(argument) for argument in statement.arguments]
         return f"{self._signatures.callee(statement.function)}({', '.join([*hidden, *arguments])})"
 

@@ -61,5 +61,5 @@ class ScalarDialect:
         return Code(f"{row.cpp}({', '.join([*hidden, *arguments])})")
 
     def helper(self, node: HelperCall, arguments: tuple[str, ...]) -> Code:
-        hidden = self._signatures.hidden_argument(node.function, self._names)
+        hidden = self._signatures.hidden_arguments(node.function, self._names)
         return Code(f"{self._signatures.callee(node.function)}({', '.join([*hidden, *arguments])})")

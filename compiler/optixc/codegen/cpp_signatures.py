@@ -78,19 +78,19 @@ class Signatures:
             hit_object=scope.name("hitObject"),
         )
 
-    def hidden_parameter(self, name: str, names: FunctionNames) -> list[str]:
-        """The declaration of the hidden parameter, if there is one."""
-        needs = self._needs[name]
-        if needs.ray:
-            return [f"oxrt::Ray& {names.trace}"]
-        return [f"OxrtThread& {names.thread}"] if needs.thread else []
+    def hidden_parameters(self, function: Function, names: FunctionNames) -> list[str]:
+        """Declarations of the hidden parameters. A program's hit object is its own, a helper's that of its caller."""
+        needs = self._needs[function.name]
+        hidden = [f"oxrt::Ray& {names.trace}"] if needs.ray else [f"OxrtThread& {names.thread}"] if needs.thread else []
+        if needs.hit_object and function.kind is None:
+            hidden.append(f"oxrt::HitObject& {names.hit_object}")
+        return hidden
 
-    def hidden_argument(self, callee: str, names: FunctionNames) -> list[str]:
-        """What a caller with these names passes for it."""
+    def hidden_arguments(self, callee: str, names: FunctionNames) -> list[str]:
+        """What a caller with these names passes to a helper for them."""
         needs = self._needs[callee]
-        if needs.ray:
-            return [names.trace]
-        return [names.thread] if needs.thread else []
+        hidden = [names.trace] if needs.ray else [names.thread] if needs.thread else []
+        return [*hidden, names.hit_object] if needs.hit_object else hidden
 
     def parameter(self, parameter: Parameter, names: FunctionNames, is_used: bool) -> str:
         """The declaration of one of the author's parameters; an unused one has no name."""
@@ -113,7 +113,7 @@ class Signatures:
     def head(self, function: Function, names: FunctionNames) -> str:
         """The function's head without its block."""
         used = used_parameters(function)
-        hidden = self.hidden_parameter(function.name, names)
+        hidden = self.hidden_parameters(function, names)
         parameters = [self.parameter(p, names, p.local.name in used) for p in function.parameters]
         template = "template <class Programs> " if self._needs[function.name].programs else ""
         result = self._types.name(function.result)

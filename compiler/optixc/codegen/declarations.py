@@ -89,7 +89,7 @@ def _mentions_itself(statement: Stmt, name: str) -> bool:
     target = assigned_local(statement)
     if target is not None and target.name == name:
         return True
-    return any(isinstance(part, LocalRef) and part.local.name == name for operand in operands(statement) for part in subexpressions(operand))
+    return any(_mentions_in(operand, name) for operand in operands(statement))
 
 
 def _mentions(statement: Stmt, name: str) -> bool:
@@ -110,8 +110,8 @@ def _declaring_statement(body: Body, name: str) -> Stmt | None:
     if len(mentioning) > 1:
         return None
     if isinstance(first, ForRange) and target is not None and target.name == name:
-        is_simple = not is_changed(first.body, name) and not any(_mentions_in(bound, name) for bound in (first.start, first.stop, first.step))
-        return first if is_simple else None
+        bounds = (first.start, first.stop, first.step)
+        return None if is_changed(first.body, name) or any(_mentions_in(bound, name) for bound in bounds) else first
     inner = _inner_blocks(first)
     if _mentions_itself(first, name) and not (isinstance(first, While) and first.condition_body):
         return None

@@ -26,6 +26,7 @@ class Writer:
         self._depth = 0
         self._path: str | None = None
         self._next_line = 0
+        self._has_left = False
 
     def text(self) -> str:
         return "\n".join(self._lines) + "\n"
@@ -34,14 +35,14 @@ class Writer:
         """Writes one line (broken at commas if it is too long) that stands for `span`."""
         if span is not None:
             self._go_to(span)
+        elif text and self._has_left:
+            self._return_to_generated_file()
         for piece in _broken(_INDENT * self._depth + text if text else ""):
             self._put(piece)
 
     def leave_source(self) -> None:
-        """What follows is the generated file's own."""
-        if self._path is not None:
-            self._path = None
-            self._lines.append(f"#line {len(self._lines) + 2} {string_literal(self._file_name)}")
+        """What follows is the generated file's own, until a line has a span again."""
+        self._has_left = self._path is not None
 
     @contextmanager
     def block(self, head: str, span: Span | None = None, tail: str = "}") -> Iterator[None]:
@@ -58,9 +59,15 @@ class Writer:
         self._depth -= 1
 
     def _go_to(self, span: Span) -> None:
+        self._has_left = False
         if self._path != span.path or self._next_line != span.line:
             self._lines.append(f"#line {span.line} {string_literal(span.path)}")
             self._path, self._next_line = span.path, span.line
+
+    def _return_to_generated_file(self) -> None:
+        self._has_left = False
+        self._path = None
+        self._lines.append(f"#line {len(self._lines) + 2} {string_literal(self._file_name)}")
 
     def _put(self, text: str) -> None:
         self._lines.append(text)

@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 
-from optixc.ir.intrinsic_rows import ATOMIC_NAMES
+from optixc.ir.intrinsic_rows import ATOMIC_NAMES, INTRINSICS
+from optixc.ir.intrinsics import State
 from optixc.ir.nodes import (
     Assert,
     CallCallable,
@@ -60,10 +61,6 @@ class Features:
     def has(self, name: str) -> bool:
         return any(feature.name == name and feature.is_in for feature in self.items)
 
-    @property
-    def uses_textures(self) -> bool:
-        return self.has("textures")
-
 
 def features(pipeline: Pipeline) -> Features:
     """Looks through the programs and helpers that are left after the passes."""
@@ -74,7 +71,7 @@ def features(pipeline: Pipeline) -> Features:
             _first(pipeline, "recursion", lambda s: isinstance(s, Trace), of=_is_shader),
             _first(pipeline, "occlusion queries", lambda s: isinstance(s, Trace) and _may(s, _TERMINATE)),
             _first(pipeline, "face and any-hit culling", lambda s: isinstance(s, Trace) and _may(s, _CULLING)),
-            _first(pipeline, "hit objects", lambda s: isinstance(s, Trace) and s.name != "trace"),
+            _hit_objects(pipeline),
             _first(pipeline, "callables", lambda s: isinstance(s, CallCallable)),
             _first(pipeline, "exceptions thrown", lambda s: isinstance(s, CallIntrinsic) and s.name == "throw_exception"),
             _first(pipeline, "atomics", lambda s: isinstance(s, CallIntrinsic) and s.name in ATOMIC_NAMES),
@@ -125,6 +122,15 @@ def _first_expression(pipeline: Pipeline, name: str, matches: Callable[[Expr], b
             if matches(expression):
                 return Feature(name, True, getattr(expression, "span", None))
     return Feature(name, False)
+
+
+def _hit_objects(pipeline: Pipeline) -> Feature:
+    """Traverse, invoke, or any function on the outgoing hit object."""
+    name = "hit objects"
+    traced = _first(pipeline, name, lambda s: isinstance(s, Trace) and s.name != "trace")
+    called = _first(pipeline, name, lambda s: isinstance(s, CallIntrinsic) and INTRINSICS[s.name].state is State.HIT_OBJECT)
+    read = _first_expression(pipeline, name, lambda e: isinstance(e, IntrinsicCall) and INTRINSICS[e.name].state is State.HIT_OBJECT)
+    return next((feature for feature in (traced, called, read) if feature.is_in), traced)
 
 
 def _element(pipeline: Pipeline) -> Span | None:

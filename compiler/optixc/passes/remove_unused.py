@@ -82,9 +82,9 @@ def _without(body: Body, unread: set[str]) -> Body:
             root = place_root(statement.target)
             if root is not None and root.name in unread:
                 continue
-        elif isinstance(statement, CallHelper | CallIntrinsic | CallCallable) and statement.target is not None:
-            if statement.target.name in unread:
-                statement = replace(statement, target=None)
+        elif isinstance(statement, CallHelper | CallIntrinsic | CallCallable):
+            is_unread = statement.target is not None and statement.target.name in unread
+            statement = replace(statement, target=None) if is_unread else statement
         result.append(map_blocks(statement, lambda block: _without(block, unread)))
     same = len(result) == len(body) and all(a is b for a, b in zip(result, body, strict=True))
     return body if same else tuple(result)

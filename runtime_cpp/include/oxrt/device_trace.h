@@ -355,12 +355,15 @@ template <class Programs> OXRT_INLINE void runClosestHit(Ray& ray, typename Prog
         fault(*ray.thread, OXRT_FAULT_HIT_SBT, "the hit needs a record behind the end of the hit group records", place);
 }
 
+/* Whether a traversal can find anything. */
+OXRT_INLINE bool canHit(const Ray& ray) { return ray.root && ray.root->scene && ray.tmin <= ray.tmax; }
+
 /* Traversal and then the closest-hit or miss program. */
 template <class Programs, class Flags> OXRT_INLINE void traceNow(Ray& ray, typename Programs::Payload& payload, Place place) {
     using Known = FlagTraits<Flags>;
     constexpr bool runsClosestHit = Programs::hasClosestHit && Known::mayRunClosestHit;
     bool isHit = false;
-    if (ray.root && ray.root->scene && ray.tmin <= ray.tmax) {
+    if (canHit(ray)) {
         if constexpr (Known::alwaysTerminates && !runsClosestHit)
             isHit = traverseAny<Programs, Flags>(ray);
         else
@@ -396,13 +399,11 @@ template <class Programs> OXRT_INLINE void leaveTrace(OxrtThread& thread) {
         --thread.traceDepth;
 }
 
-template <class Programs, class Flags>
-OXRT_INLINE void trace(OxrtThread& thread, uint64_t handle, const float3& origin, const float3& direction, float tmin, float tmax, float time,
-                       uint32_t mask, Flags flags, uint32_t sbtOffset, uint32_t sbtStride, uint32_t missIndex,
-                       typename Programs::Payload& payload, Place place = Place::current()) {
-    if (!enterTrace<Programs>(thread, place))
-        return;
-    Ray ray;
+/* Enters what the caller of a trace gave. */
+template <class Programs>
+OXRT_INLINE void setRay(Ray& ray, OxrtThread& thread, uint64_t handle, const float3& origin, const float3& direction, float tmin, float tmax,
+                        float time, uint32_t mask, uint32_t flags, uint32_t sbtOffset, uint32_t sbtStride, uint32_t missIndex,
+                        typename Programs::Payload& payload, Place place) {
     ray.thread = &thread;
     ray.payload = &payload;
     ray.root = findTraversable(*thread.launch, handle);
@@ -413,7 +414,7 @@ OXRT_INLINE void trace(OxrtThread& thread, uint64_t handle, const float3& origin
     ray.time = Programs::usesTime ? time : 0.0f;
     ray.mask = mask & 0xFF;
     ray.flags = flags & 0xFFFF;
-    ray.sbtOffset = (sbtOffset | sbtStride >> 4) & 15; /* as in OptiX: the stride's bits 4 to 7 spill into the offset */
+    ray.sbtOffset = sbtOffset & 15;
     ray.sbtStride = sbtStride & 15;
     ray.missIndex = missIndex;
     if constexpr (Programs::isValidated) {
@@ -423,6 +424,16 @@ OXRT_INLINE void trace(OxrtThread& thread, uint64_t handle, const float3& origin
         else if (!ray.root && handle != 0)
             fault(thread, OXRT_FAULT_INVALID_TRAVERSABLE, "the handle names no traversable of this context, or one that was destroyed", place);
     }
+}
+
+template <class Programs, class Flags>
+OXRT_INLINE void trace(OxrtThread& thread, uint64_t handle, const float3& origin, const float3& direction, float tmin, float tmax, float time,
+                       uint32_t mask, Flags flags, uint32_t sbtOffset, uint32_t sbtStride, uint32_t missIndex,
+                       typename Programs::Payload& payload, Place place = Place::current()) {
+    if (!enterTrace<Programs>(thread, place))
+        return;
+    Ray ray;
+    setRay<Programs>(ray, thread, handle, origin, direction, tmin, tmax, time, mask, flags, sbtOffset, sbtStride, missIndex, payload, place);
     traceNow<Programs, Flags>(ray, payload, place);
     leaveTrace<Programs>(thread);
 }
