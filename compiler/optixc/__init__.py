@@ -1,0 +1,78 @@
+"""optixc: OptiX's programming model on CPUs. Shader programs in restricted Python, compiled to C++ on Embree.
+
+Shaders use the decorators, types and device functions; the host uses `DeviceContext` and what it makes. See the README for a first
+shader.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+from optixc import enums, errors
+from optixc.api import DeviceContext
+from optixc.api_programs import device, device_function, launch_params, program
+from optixc.diagnostics import CompileError
+from optixc.enums import *  # noqa: F403
+from optixc.errors import *  # noqa: F403
+from optixc.host.accel import Accel
+from optixc.host.annotations import Array, Array2, Array3, FixedArray, Texture, Traversable
+from optixc.host.context import OptixcWarning
+from optixc.host.groups import Module, Program, ProgramGroup, Record
+from optixc.host.image import read_image, write_image
+from optixc.host.inputs import BuildInputCustomPrimitives, BuildInputInstances, BuildInputTriangles, Instance, MotionOptions
+from optixc.host.matrices import float3x3, float3x4, float4x4
+from optixc.host.pipeline import Pipeline, PipelineReport
+from optixc.host.sbt import ShaderBindingTable
+from optixc.host.scalars import float16, float32, float64, int8, int16, int32, int64, uint8, uint16, uint32, uint64
+from optixc.host.structs import attributes, copy, payload, payload_word, struct
+from optixc.host.vectors import (
+    bool2,
+    bool3,
+    bool4,
+    char2,
+    char3,
+    char4,
+    double2,
+    double3,
+    double4,
+    float2,
+    float3,
+    float4,
+    half2,
+    half3,
+    half4,
+    int2,
+    int3,
+    int4,
+    longlong2,
+    longlong3,
+    longlong4,
+    short2,
+    short3,
+    short4,
+    uchar2,
+    uchar3,
+    uchar4,
+    uint2,
+    uint3,
+    uint4,
+    ulonglong2,
+    ulonglong3,
+    ulonglong4,
+    ushort2,
+    ushort3,
+    ushort4,
+)
+from optixc.options import PipelineCompileOptions
+from optixc.toolchain import ToolchainError
+from optixc.version import __version__
+
+__all__ = [name for name in globals() if not name.startswith("_") and name not in ("annotations", "enums", "errors", "Any", "device_function")]
+
+
+def __getattr__(name: str) -> Any:
+    found = device_function(name)
+    if found is None:
+        raise AttributeError(f"module 'optixc' has no attribute {name!r}")
+    globals()[name] = found
+    return found

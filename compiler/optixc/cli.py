@@ -18,10 +18,11 @@ from optixc.api import DeviceContext
 from optixc.cache import Cache, default_folder, max_size
 from optixc.codegen.header import emit_header
 from optixc.diagnostics import CompileError
-from optixc.errors import FileIoError, OptixError
-from optixc.frontend import report
+from optixc.errors import FileIoError, InvalidValueError, OptixError
+from optixc.frontend.print_types import print_types
 from optixc.ir import layout, nodes
 from optixc.ir.text import print_module
+from optixc.ir.types import Struct, StructKind
 from optixc.options import MAX_TRACE_DEPTH, TARGETS, BoundValue, CompileOptions
 from optixc.version import __version__
 
@@ -56,7 +57,7 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument("shader", nargs="?", type=Path, help="the shader file; it is parsed, never run")
     parser.add_argument("-o", dest="output", type=Path, metavar="STEM", help="write STEM.so, STEM.h and STEM.json (default: the shader's name)")
     parser.add_argument("--emit", choices=EMIT_FORMS, help="print this form on standard output and write nothing")
-    parser.add_argument("--print-after", metavar="PASS", help="print the IR after this pass on standard error")
+    parser.add_argument("--print-after", metavar="PASS", help="print the IR after this pass on standard output")
     parser.add_argument("--bind", action="append", default=[], metavar="NAME=VALUE", help="make a launch parameter a constant")
     parser.add_argument("-I", dest="include_dirs", action="append", default=[], type=Path, metavar="DIR", help="look for helper files here too")
     parser.add_argument("--simd", choices=("auto", "1", "8", "16"), default="auto", help="lanes of a packet (default: auto)")
@@ -98,12 +99,14 @@ def _compile(chosen: argparse.Namespace) -> int:
 def _emit(chosen: argparse.Namespace, unit: driver.Unit, names: list[str], options: CompileOptions, store: Cache) -> int:
     result = unit.result
     if chosen.emit == "types":
-        print(report.print_types(result.checked))
+        print(print_types(result.checked))
         return 0
     if chosen.emit == "ir" and chosen.print_after is None:
         print(print_module(result.module))
         return 0
-    emitted = driver.emit([result.module], names, options, chosen.print_after)
+    if chosen.print_after is not None and chosen.print_after not in driver.pass_names():
+        raise InvalidValueError(f"--print-after takes one of {', '.join(driver.pass_names())}, not {chosen.print_after!r}")
+    emitted = driver.emit([result.module], names, options, lambda name, pipeline: _print_pass(chosen.print_after, name, pipeline))
     if chosen.emit == "asm":
         print(toolchain.compile_assembly(emitted.text, toolchain.find_compiler(store.memory), driver.recipe(options)))
     elif chosen.emit == "header":
@@ -113,6 +116,11 @@ def _emit(chosen: argparse.Namespace, unit: driver.Unit, names: list[str], optio
     elif chosen.emit == "ir":
         print(print_module(emitted.pipeline))
     return 0
+
+
+def _print_pass(wanted: str | None, name: str, pipeline: nodes.Pipeline) -> None:
+    if name == wanted:
+        print(print_module(pipeline))
 
 
 def _write(chosen: argparse.Namespace, unit: driver.Unit, names: list[str], options: CompileOptions, store: Cache) -> None:
@@ -146,18 +154,18 @@ def _manifest(unit: driver.Unit, pipeline: nodes.Pipeline, built: driver.Built) 
     }
 
 
-def _memory_structs(pipeline: nodes.Pipeline) -> list[layout.Struct]:
-    return [struct for struct in pipeline.structs if struct.kind is layout.StructKind.PLAIN]
+def _memory_structs(pipeline: nodes.Pipeline) -> list[Struct]:
+    return [struct for struct in pipeline.structs if struct.kind is StructKind.PLAIN]
 
 
 def _bound_value(text: str) -> tuple[str, BoundValue]:
     name, separator, value = text.partition("=")
     if not separator or not name.isidentifier():
-        raise OptixError(f"--bind takes NAME=VALUE, not {text!r}")
+        raise InvalidValueError(f"--bind takes NAME=VALUE, not {text!r}")
     try:
         parsed = ast.literal_eval(value)
     except (ValueError, SyntaxError) as error:
-        raise OptixError(f"--bind {name}: {value!r} is not a number, a bool or a tuple of them") from error
+        raise InvalidValueError(f"--bind {name}: {value!r} is not a number, a bool or a tuple of them") from error
     bound: BoundValue = parsed
     return name, bound
 

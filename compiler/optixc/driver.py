@@ -16,15 +16,17 @@ from typing import Any
 from optixc import passes, toolchain
 from optixc.cache import Cache, Json, digest
 from optixc.codegen import cpp_pipeline
-from optixc.errors import FileIoError, InvalidOperationError, InvalidValueError, NotSupportedError
+from optixc.errors import FileIoError, InvalidOperationError, InvalidValueError, NotSupportedError, PipelineLinkError
 from optixc.frontend.compile import FrontendResult, compile_file, compile_functions
 from optixc.installation import include_folder
 from optixc.ir import layout, nodes
 from optixc.ir import types as t
 from optixc.options import BoundValue, CompileOptions
 from optixc.passes.features import Features, features
-from optixc.passes.pipeline import link
+from optixc.passes.pipeline import LinkError, link
 from optixc.version import __version__
+
+PrintAfter = Callable[[str, nodes.Pipeline], None]
 
 SPMD_LANES: tuple[int, ...] = ()
 """Packet widths that the emitter knows."""
@@ -115,13 +117,21 @@ def build(units: Sequence[Unit], names: Sequence[str], options: CompileOptions, 
     return Built(entry.library, params, {**report, "compile_seconds": time.perf_counter() - began, "cache_hit": entry.hit})
 
 
-def emit(modules: Sequence[nodes.Module], names: Sequence[str], options: CompileOptions, print_after: str | None = None) -> Emitted:
-    """Links the named programs, runs the passes, writes the C++ text."""
+def emit(modules: Sequence[nodes.Module], names: Sequence[str], options: CompileOptions, print_after: PrintAfter | None = None) -> Emitted:
+    """Links the named programs, runs the passes (`print_after(name, pipeline)` behind each), writes the C++ text."""
     params = next((module.params for module in modules if module.params is not None), None)
-    linked = link(tuple(modules), tuple(names), pipeline_options(options, params))
+    try:
+        linked = link(modules, names, pipeline_options(options, params))
+    except LinkError as error:
+        raise PipelineLinkError(str(error)) from error
     pipeline = passes.run(linked, print_after=print_after)
     found = features(pipeline)
     return Emitted(cpp_pipeline.emit(pipeline, found), pipeline, found)
+
+
+def pass_names() -> tuple[str, ...]:
+    """The passes in their order."""
+    return tuple(name for name, _ in passes.PASSES)
 
 
 def pipeline_options(options: CompileOptions, params: t.Struct | None) -> nodes.PipelineOptions:
@@ -178,7 +188,7 @@ def _describe(emitted: Emitted, options: CompileOptions, compiler: toolchain.Com
     return {
         "compiler": str(compiler),
         "programs": [program.name for program in emitted.pipeline.programs],
-        "features": {},
+        "features": {feature.name: feature.describe() for feature in emitted.features.items},
         "traces": [],
         "ignored": ["allow_clustered_geometry"] if options.pipeline.allow_clustered_geometry else [],
     }

@@ -46,8 +46,9 @@ class ToolchainError(OptixError):
 
 @dataclass(frozen=True)
 class Compiler:
-    """A C++ compiler on this machine; `kind` is "clang" or "gcc"."""
+    """A C++ compiler on this machine; `kind` is "clang" or "gcc". `command` is what is run, `path` the real file behind it."""
 
+    command: str
     path: str
     size: int
     mtime_ns: int
@@ -60,7 +61,7 @@ class Compiler:
         return f"{self.path}:{self.size}:{self.mtime_ns}"
 
     def __str__(self) -> str:
-        return f"{self.kind} {'.'.join(map(str, self.version))} ({self.path})"
+        return f"{self.kind} {'.'.join(map(str, self.version))} ({self.command})"
 
 
 @dataclass(frozen=True)
@@ -137,7 +138,7 @@ def identify(path: str, memory: Path | None = None) -> Compiler | None:
         if memory is not None:
             _remember(memory, key, known)
     kind, version = known
-    return Compiler(real, status.st_size, status.st_mtime_ns, kind, tuple(version)) if kind else None
+    return Compiler(path, real, status.st_size, status.st_mtime_ns, kind, tuple(version)) if kind else None
 
 
 def compile_shared(text: str, output: Path, compiler: Compiler, build: Build) -> None:
@@ -188,9 +189,9 @@ def processor_lanes(target: str = "native") -> int:
 
 def _run(compiler: Compiler, arguments: list[str]) -> None:
     try:
-        result = subprocess.run([compiler.path, *arguments], capture_output=True, text=True, errors="replace", check=False)
+        result = subprocess.run([compiler.command, *arguments], capture_output=True, text=True, errors="replace", check=False)
     except OSError as error:
-        raise ToolchainError(f"{compiler.path} cannot be started: {error.strerror}; set OPTIXC_CXX to a working compiler") from error
+        raise ToolchainError(f"{compiler.command} cannot be started: {error.strerror}; set OPTIXC_CXX to a working compiler") from error
     if result.returncode != 0:
         lines = result.stderr.strip().splitlines()[:_LOG_LINES]
         head = f"{compiler} failed with exit code {result.returncode}; this is a bug of optixc unless the disk is full:"

@@ -31,7 +31,7 @@ _KIND_SLOTS = {
 _MAY_BE_EMPTY = (ProgramGroupKind.MISS, ProgramGroupKind.HITGROUP)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Program:
     """A program of a module: what `module["__raygen__x"]` gives. `record` is the layout of its SBT data, None if it uses none."""
 

@@ -15,6 +15,7 @@ import cffi
 from optixc.errors import InvalidDeviceContextError, LibraryNotFoundError, from_code
 from optixc.installation import include_folder, library_path
 
+
 def header_declarations(text: str) -> str:
     """What cffi reads of a header: no comments, no C++ blocks, no preprocessor lines, no export word."""
     text = re.sub(r"/\*.*?\*/", "", text, flags=re.DOTALL)
@@ -23,7 +24,7 @@ def header_declarations(text: str) -> str:
 
 
 @cache
-def ffi() -> cffi.FFI:
+def ffi() -> Any:
     """The declarations of oxrt.h."""
     made = cffi.FFI()
     made.cdef(header_declarations((include_folder() / "oxrt" / "oxrt.h").read_text()))

@@ -30,7 +30,7 @@ class PipelineReport:
     programs: tuple[str, ...]
     params_size: int
     max_trace_depth: int
-    features: dict[str, str | None] = field(default_factory=dict)
+    features: dict[str, str] = field(default_factory=dict)
     traces: tuple[str, ...] = ()
     ignored: tuple[str, ...] = ()
 
@@ -40,7 +40,7 @@ class PipelineReport:
             f"{len(self.programs)} programs, {self.lanes} lane{'s' if self.lanes > 1 else ''}, {source}, {self.compiler}",
             f"library {self.library}",
             f"launch parameters {self.params_size} bytes, trace depth {self.max_trace_depth}",
-            *(f"{'with' if reason else 'without'} {name}{f': {reason}' if reason else ''}" for name, reason in self.features.items()),
+            *self.features.values(),
             *(f"trace {one}" for one in self.traces),
             *(f"ignored on a CPU: {one}" for one in self.ignored),
         ]

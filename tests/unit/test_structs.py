@@ -1,0 +1,142 @@
+"""Struct classes on the host: construction, conversion, checks, bytes that follow every change."""
+
+from __future__ import annotations
+
+import copy as python_copy
+from typing import Any
+
+import numpy as np
+import pytest
+
+import optixc as ox
+from optixc import float3
+
+
+@ox.struct
+class Camera:
+    eye: float3
+    fov: float = 1.5
+
+
+@ox.struct
+class Params:
+    image: ox.Array2[ox.float4]
+    camera: Camera
+    scene: ox.Traversable
+    count: ox.uint32 = 7
+    weights: ox.FixedArray[ox.float32, 2] = (0.5, 0.25)
+
+
+def image(*shape: int) -> np.ndarray:
+    return np.zeros(shape, np.float32)
+
+
+def params(**changes: Any) -> Params:
+    values = {"image": image(2, 3, 4), "camera": Camera((1, 2, 3)), "scene": 0, **changes}
+    return Params(**values)
+
+
+def row(value: Any) -> Any:
+    return np.frombuffer(bytes(value.packed()), type(value).dtype)[0]
+
+
+def test_construction_by_position_and_keyword_with_defaults() -> None:
+    camera = Camera((1, 2, 3))
+    assert camera.eye == float3(1, 2, 3)
+    assert camera.fov == 1.5
+    assert Camera(eye=float3(1), fov=2.0) == Camera(1, 2.0)
+
+
+def test_arrays_are_not_copied() -> None:
+    target = image(2, 3, 4)
+    made = params(image=target)
+    assert made.image is target
+    packed = row(made)["image"]
+    assert packed["data"] == target.ctypes.data
+    assert tuple(packed["shape"]) == (2, 3)
+
+
+def test_bytes_follow_changes_also_of_a_struct_inside() -> None:
+    camera = Camera((1, 2, 3))
+    made = params(camera=camera)
+    camera.fov = 4.0
+    made.count = 9
+    assert row(made)["camera"]["fov"] == 4.0
+    assert row(made)["count"] == 9
+    made.camera = Camera((0, 0, 0), 1.0)
+    camera.fov = 100.0
+    assert row(made)["camera"]["fov"] == 1.0
+
+
+def test_missing_unknown_and_doubled_fields_are_type_errors() -> None:
+    with pytest.raises(TypeError, match="needs a value for image, camera"):
+        Params(scene=0)  # type: ignore[call-arg]
+    with pytest.raises(TypeError, match="has no field focus; it has eye, fov"):
+        Camera(eye=0, focus=3)  # type: ignore[call-arg]
+    with pytest.raises(TypeError, match="two values"):
+        Camera((1, 2, 3), eye=0)  # type: ignore[misc]
+    with pytest.raises(AttributeError, match="no field 'focus'"):
+        Camera(0).focus = 3  # type: ignore[attr-defined]
+
+
+@pytest.mark.parametrize(
+    ("field", "value", "message"),
+    [
+        ("image", np.zeros((2, 3, 4)), r"astype\(numpy.float32\)"),
+        ("image", image(2, 3, 3), r"shape \(n, m, 4\)"),
+        ("image", image(3, 4), r"shape \(n, m, 4\)"),
+        ("image", image(4, 3, 2).T, "ascontiguousarray"),
+        ("image", image(4, 3, 4)[::2], "ascontiguousarray"),
+        ("image", [[0.0]], "numpy array"),
+        ("count", -1, "uint32"),
+        ("count", 1.5, "uint32"),
+        ("count", 1 << 32, "uint32"),
+        ("scene", "world", "Traversable"),
+        ("scene", -1, "Traversable"),
+        ("weights", (1, 2, 3), "2 elements"),
+        ("camera", 3, "Camera"),
+    ],
+)
+def test_wrong_values_are_named(field: str, value: object, message: str) -> None:
+    made = params()
+    before = bytes(made.packed())
+    with pytest.raises(ox.InvalidValueError, match=message) as caught:
+        setattr(made, field, value)
+    assert f"Params.{field}" in str(caught.value)
+    assert bytes(made.packed()) == before
+
+
+def test_struct_arrays_take_the_structs_dtype() -> None:
+    @ox.struct
+    class Scene:
+        cameras: ox.Array[Camera]
+
+    cameras = np.zeros(3, Camera.dtype)
+    cameras["fov"] = 2.0
+    assert row(Scene(cameras))["cameras"]["shape"][0] == 3
+    with pytest.raises(ox.InvalidValueError, match="dtype of the struct"):
+        Scene(np.zeros((3, 4), np.float32))
+
+
+def test_copies_are_independent() -> None:
+    camera = Camera((1, 2, 3))
+    for other in (ox.copy(camera), python_copy.copy(camera)):
+        other.fov = 9.0
+        assert camera.fov == 1.5
+        assert other.eye == camera.eye
+
+
+def test_a_field_that_no_memory_can_hold() -> None:
+    with pytest.raises(TypeError, match=r"Wrong\.name.*not a type that a struct can hold"):
+
+        @ox.struct
+        class Wrong:
+            name: str
+
+
+def test_payload_words_refuse_unknown_access() -> None:
+    assert ox.payload_word(caller="rw", ch="w").semantics == 3 | 8
+    with pytest.raises(TypeError, match="caller, ch, ms"):
+        ox.payload_word(raygen="r")
+    with pytest.raises(TypeError, match='"rw"'):
+        ox.payload_word(ch="x")
