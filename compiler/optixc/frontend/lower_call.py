@@ -41,6 +41,7 @@ from optixc.ir.nodes import (
     FieldRef,
     HelperCall,
     IntrinsicCall,
+    Literal,
     Local,
     LocalRef,
     ParameterRole,
@@ -146,6 +147,8 @@ def _construct_vector(low: FunctionLowering, node: ast.Call, target: t.Vector, v
         value = values[0]
         if isinstance(value.type, t.Scalar):
             number = _element(value, target.element, low, node)
+            if isinstance(number, Literal):
+                return _literal_vector(result, [number] * result.size)
             return Convert(number, result)
         assert isinstance(value.type, t.Vector)
         if value.type.size > target.size:
@@ -163,7 +166,15 @@ def _construct_vector(low: FunctionLowering, node: ast.Call, target: t.Vector, v
             parts += [_element(component(kept, i), target.element, low, node) for i in range(value.type.size)]
         else:
             parts.append(_element(value, target.element, low, node))
+    literals = [part for part in parts if isinstance(part, Literal)]
+    if len(literals) == result.size:
+        return _literal_vector(result, literals)
     return Construct(result, tuple(parts))
+
+
+def _literal_vector(vector: t.Vector, parts: list[Literal]) -> Literal:
+    values = [part.value for part in parts]
+    return Literal(tuple(value for value in values if not isinstance(value, tuple)), vector)
 
 
 def _element(value: Expr, element: t.Scalar, low: FunctionLowering, node: ast.AST) -> Expr:

@@ -195,7 +195,10 @@ class Select:
 
 @dataclass(frozen=True)
 class Convert:
-    """A change of scalar type, element-wise on vectors, or a scalar spread over a vector. float to int truncates and saturates."""
+    """A change of scalar type, element-wise on vectors, or a scalar spread over a vector; uint64 to a handle keeps the bits.
+
+    float to int truncates and saturates; a number to 8 or 16 bits and back is what storing and reading would keep of it.
+    """
 
     operand: Expr
     type: Type
@@ -203,7 +206,10 @@ class Convert:
 
 @dataclass(frozen=True)
 class Construct:
-    """A vector (scalars and vectors in order), matrix (rows or scalars), struct (fields in order), tuple or fixed array (items)."""
+    """A vector (scalars and vectors in order), matrix (rows or scalars), struct (fields in order), tuple or fixed array (items).
+
+    A fixed array without arguments is all zero.
+    """
 
     type: Type
     arguments: tuple[Expr, ...]

@@ -49,7 +49,23 @@ from optixc.ir.nodes import (
     UnaryOp,
     While,
 )
-from optixc.ir.types import BOOL, VOID, Array, FixedArray, Matrix, Scalar, ScalarKind, Struct, Tuple, Type, Vector, scalar_of
+from optixc.ir.types import (
+    BOOL,
+    UINT64,
+    VOID,
+    Array,
+    FixedArray,
+    Matrix,
+    Scalar,
+    ScalarKind,
+    Struct,
+    Texture,
+    Traversable,
+    Tuple,
+    Type,
+    Vector,
+    scalar_of,
+)
 from optixc.ir.walk import operands, statements, subexpressions
 
 _COMPARISONS = frozenset(
@@ -193,7 +209,8 @@ def _expression(expression: Expr, helpers: dict[str, Function], params: Struct |
             if expression.condition.type != BOOL or {expression.if_true.type, expression.if_false.type} != {expression.type}:
                 yield f"conditional expression of {expression.if_true.type} and {expression.if_false.type} is {expression.type}"
         case Convert():
-            if scalar_of(expression.operand.type) is None or scalar_of(expression.type) is None:
+            is_handle = isinstance(expression.type, Traversable | Texture) and expression.operand.type == UINT64
+            if not is_handle and (scalar_of(expression.operand.type) is None or scalar_of(expression.type) is None):
                 yield f"conversion of {expression.operand.type} to {expression.type}"
         case Construct():
             yield from _construct(expression)
