@@ -71,7 +71,7 @@ class ScalarFunction:
 
     def _write_hidden_locals(self) -> None:
         needs, names = self._signatures.needs(self._function.name), self._names
-        if needs.ray and needs.thread:
+        if needs.ray and needs.names_thread:
             self._writer.line(f"OxrtThread& {names.thread} = *{names.trace}.thread;")
         if needs.params:
             params = self._types.struct(self._calls.params_struct())

@@ -7,7 +7,7 @@ The emitters ask: which hidden arguments does the C++ function take, does it nee
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 
 from optixc.ir.intrinsic_rows import INTRINSICS
 from optixc.ir.intrinsics import Effect, State
@@ -37,10 +37,12 @@ THROW = "throw_exception"
 
 @dataclass(frozen=True)
 class Needs:
-    """`thread` and `ray`: hidden arguments. `params`: uses launch parameters. `programs`: needs to know what the trace can run.
-    `hit_object`: has an outgoing hit object. `ends`: may end the program. `throws`: may end the launch index."""
+    """`thread` and `ray`: hidden arguments; `names_thread`: its own code mentions the thread, even where it comes with the ray.
+    `params`: uses launch parameters. `programs`: needs to know what the trace can run. `hit_object`: has an outgoing hit object.
+    `ends`: may end the program. `throws`: may end the launch index."""
 
     thread: bool = False
+    names_thread: bool = False
     ray: bool = False
     params: bool = False
     programs: bool = False
@@ -50,10 +52,6 @@ class Needs:
 
     def __or__(self, other: Needs) -> Needs:
         return Needs(*(getattr(self, field.name) or getattr(other, field.name) for field in fields(Needs)))
-
-    def passed_on(self) -> Needs:
-        """What a caller needs because of a callee with these needs: parameters are reached anew from the thread."""
-        return self | Needs(thread=self.thread or self.params)
 
 
 @dataclass(frozen=True)
@@ -87,32 +85,26 @@ def needs_of_pipeline(pipeline: Pipeline) -> dict[str, Needs]:
         for function in functions:
             joined = needs[function.name]
             for callee in calls[function.name]:
-                joined = joined | _without_params(needs[callee])
+                joined = joined | _passed_on(needs[callee])
             if joined != needs[function.name]:
                 needs[function.name] = joined
                 changed = True
     return needs
 
 
-def _without_params(callee: Needs) -> Needs:
-    passed = callee.passed_on()
-    return Needs(
-        thread=passed.thread,
-        ray=passed.ray,
-        programs=passed.programs,
-        hit_object=passed.hit_object,
-        ends=passed.ends,
-        throws=passed.throws,
-    )
+def _passed_on(callee: Needs) -> Needs:
+    """What a caller needs because of a callee. Parameters are the callee's own affair, and the thread comes with the ray."""
+    return replace(callee, params=False, names_thread=(callee.thread and not callee.ray) or callee.throws)
 
 
 def _own_needs(function: Function, options: Options) -> Needs:
-    return _union(
+    own = _union(
         (
             *(_of_statement(statement, options) for statement in statements(function.body)),
             *(_of_expression(expression, options) for expression in expressions(function.body)),
         )
     )
+    return replace(own, names_thread=own.thread)
 
 
 def _union(parts: Iterable[Needs]) -> Needs:
