@@ -112,7 +112,8 @@ def print_statistics(context: ox.DeviceContext, pipeline: ox.Pipeline, build_sec
     report = pipeline.report()
     print(f"  compile  {report.compile_seconds:.3f} s{' (from the cache)' if report.cache_hit else ''}")
     print(f"  build    {build_seconds:.3f} s")
-    print(f"  trace    {rays / 1e6:.1f} million rays in {seconds:.2f} s: {rays / seconds / 1e6:.2f} Mrays/s on {context.info()['threads']} threads")
+    rate = f"{rays / seconds / 1e6:.2f} Mrays/s on {context.info()['threads']} threads"
+    print(f"  trace    {rays / 1e6:.1f} million rays in {seconds:.2f} s: {rate}")
     print(f"  memory   {resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024.0:.0f} MiB at most")
 
 

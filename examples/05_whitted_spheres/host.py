@@ -45,7 +45,7 @@ def plastic_balls() -> shader.PlasticBalls:
             placed.append((x, z, radius))
     spheres = np.array([(x, radius, z, radius) for x, z, radius in placed[2:]], np.float32)
     hue = random.uniform(0.0, 2.0 * np.pi, (len(spheres), 1))
-    colors = (0.08 + 0.7 * (0.5 + 0.5 * np.cos(hue + [0.0, 2.1, 4.2])) ** 1.5).astype(np.float32)
+    colors = (0.08 + 0.7 * (0.5 + 0.5 * np.cos(hue + np.array([0.0, 2.1, 4.2]))) ** 1.5).astype(np.float32)
     return shader.PlasticBalls(spheres=spheres, colors=colors)
 
 
@@ -127,7 +127,8 @@ def print_statistics(context: ox.DeviceContext, pipeline: ox.Pipeline, build_sec
     report = pipeline.report()
     print(f"  compile  {report.compile_seconds:.3f} s{' (from the cache)' if report.cache_hit else ''}")
     print(f"  build    {build_seconds:.3f} s")
-    print(f"  trace    {rays / 1e6:.1f} million rays in {seconds:.2f} s: {rays / seconds / 1e6:.2f} Mrays/s on {context.info()['threads']} threads")
+    rate = f"{rays / seconds / 1e6:.2f} Mrays/s on {context.info()['threads']} threads"
+    print(f"  trace    {rays / 1e6:.1f} million rays in {seconds:.2f} s: {rate}")
     print(f"  memory   {resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024.0:.0f} MiB at most")
 
 

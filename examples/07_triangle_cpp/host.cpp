@@ -123,15 +123,14 @@ int main(int argc, char** argv)
     table.hitgroupCount = 1;
 
     std::vector<float> image(size_t{kSize} * kSize * 4);
-    Params params{};
-    params.image.data = reinterpret_cast<decltype(params.image.data)>(image.data());
-    params.image.shape[0] = kSize;
-    params.image.shape[1] = kSize;
-    params.scene = info.handle;
-    params.eye = {0.0f, 0.0f, 1.7f};
-    params.u = {0.4142f, 0.0f, 0.0f};
-    params.v = {0.0f, 0.4142f, 0.0f};
-    params.w = {0.0f, 0.0f, -1.0f};
+    const Params params{
+        .image = {reinterpret_cast<float(*)[4]>(image.data()), {kSize, kSize}},
+        .scene = info.handle,
+        .eye = {0.0f, 0.0f, 1.7f},
+        .u = {0.4142f, 0.0f, 0.0f},
+        .v = {0.0f, 0.4142f, 0.0f},
+        .w = {0.0f, 0.0f, -1.0f},
+    };
     check(oxrtLaunch(pipeline, &params, sizeof(params), &table, kSize, kSize, 1), "launch");
 
     const bool written = writePpm(output, image);

@@ -95,7 +95,6 @@ def test_mesh_viewer_reads_files(tmp_path: Path) -> None:
 
 
 def test_ambient_occlusion_agrees_with_an_independent_estimate(tmp_path: Path) -> None:
-    pytest.importorskip("embreex")
     size, count = 48, 64
     run("04_ambient_occlusion", "--size", size, "--samples", 8, "--occlusion-rays", 8, "--output", tmp_path / "a.exr")
     image = ox.read_image(tmp_path / "a.exr")[:, :, 0]
@@ -108,14 +107,13 @@ def test_ambient_occlusion_agrees_with_an_independent_estimate(tmp_path: Path) -
 
 def reference_occlusion(courtyard: ModuleType, size: int, count: int) -> np.ndarray:
     """The courtyard through embreex and numpy: one jittered primary ray and one occlusion ray per sample."""
-    from embreex.mesh_construction import TriangleMesh  # noqa: PLC0415 - optional
-    from embreex.rtcore_scene import EmbreeScene  # noqa: PLC0415 - optional
-
+    embree_meshes = pytest.importorskip("embreex.mesh_construction")
+    embree_scenes = pytest.importorskip("embreex.rtcore_scene")
     random = np.random.default_rng(3)
     vertices, indices = courtyard.build()
     corners = vertices[indices]
-    scene = EmbreeScene()
-    TriangleMesh(scene, corners)
+    scene = embree_scenes.EmbreeScene()
+    embree_meshes.TriangleMesh(scene, corners)
     normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     normals /= np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), 1e-30)
 
