@@ -5,5 +5,6 @@
 #include <oxrt/math_geometry.h>
 #include <oxrt/device_memory.h>
 #include <oxrt/device_trace.h>
+#include <oxrt/device_handles.h>
 
 #endif
