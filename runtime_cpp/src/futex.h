@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <ctime>
 #include <linux/futex.h>
+#include <sched.h>
 #include <sys/syscall.h>
 #include <unistd.h>
 
@@ -30,6 +31,7 @@ bool spinUntil(const Changed& changed, std::chrono::nanoseconds duration)
             if (changed()) return true;
             pauseSpin();
         }
+        sched_yield(); // on a busy machine the thread that is waited for may be queued on this very core
     } while (std::chrono::steady_clock::now() < deadline);
     return changed();
 }

@@ -126,95 +126,113 @@ OxrtLaunch Pipeline::describeLaunch(const OxrtShaderBindingTable& sbt, LaunchSiz
     return description;
 }
 
-void Pipeline::prepareLaunch(const void* params, std::size_t paramsSize, const OxrtShaderBindingTable* sbt, LaunchSize size)
+std::uint64_t Pipeline::prepareLaunch(const void* params, std::size_t paramsSize, const OxrtShaderBindingTable* sbt, LaunchSize size)
 {
     const OxrtProgram& raygen = checkLaunch(params, paramsSize, sbt, size);
     std::unique_lock lock(mutex);
-    idle.wait(lock, [this] { return !active; });
-    ticket = context->beginLaunch();
+    idle.wait(lock, [this] { return ticket == 0; });
+    const std::uint64_t begunTicket = context->beginLaunch();
     launch->prepare(*context, describeLaunch(*sbt, size), raygen, params);
-    active = true;
+    ticket = begunTicket;
     begun = false;
+    return begunTicket;
 }
 
 void Pipeline::beginLaunch(const void* params, std::size_t paramsSize, const OxrtShaderBindingTable* sbt, LaunchSize size)
 {
-    prepareLaunch(params, paramsSize, sbt, size);
-    context->pool.begin(*launch);
-    const std::lock_guard lock(mutex);
-    begun = true;
+    const std::uint64_t mine = prepareLaunch(params, paramsSize, sbt, size);
+    try {
+        context->pool.begin(*launch);
+    } catch (...) {
+        endLaunch(mine);
+        throw;
+    }
+    {
+        const std::lock_guard lock(mutex);
+        begun = ticket == mine;
+    }
+    idle.notify_all(); // finishLaunch() may wait to take it over
 }
 
 void Pipeline::runLaunch(const void* params, std::size_t paramsSize, const OxrtShaderBindingTable* sbt, LaunchSize size)
 {
-    prepareLaunch(params, paramsSize, sbt, size);
-    if (launch->partCount() == 1 || context->threads == 1) {
-        launch->run();
-    } else {
-        context->pool.begin(*launch);
-        context->pool.help(*launch);
-        context->pool.wait(*launch, std::chrono::nanoseconds(-1), false);
+    const std::uint64_t mine = prepareLaunch(params, paramsSize, sbt, size);
+    try {
+        if (launch->partCount() == 1 || context->threads == 1) {
+            launch->run();
+        } else {
+            context->pool.begin(*launch);
+            context->pool.help(*launch);
+            context->pool.wait(*launch, std::chrono::nanoseconds(-1), false);
+        }
+    } catch (...) {
+        endLaunch(mine);
+        throw;
     }
-    endLaunch();
+    throwResult(endLaunch(mine));
 }
 
 bool Pipeline::waitLaunch(std::chrono::nanoseconds timeout)
 {
+    std::uint64_t waited;
     {
         const std::lock_guard lock(mutex);
         if (!begun) fail(OXRT_ERROR_INVALID_OPERATION, "no launch of this pipeline was begun; call oxrtLaunchBegin first");
+        waited = ticket;
     }
     if (!context->pool.wait(*launch, timeout, true)) return false;
-    endLaunch();
+    throwResult(endLaunch(waited));
     return true;
 }
 
 void Pipeline::finishLaunch() noexcept
 {
-    {
-        const std::lock_guard lock(mutex);
-        if (!begun) return;
-    }
-    context->pool.wait(*launch, std::chrono::nanoseconds(-1), true);
-    try {
-        endLaunch();
-    } catch (const std::exception&) {
-        // Nobody is left to be told.
+    std::unique_lock lock(mutex);
+    while (ticket != 0) {
+        if (!begun) { // another thread runs it
+            idle.wait(lock);
+            continue;
+        }
+        const std::uint64_t waited = ticket;
+        lock.unlock();
+        context->pool.wait(*launch, std::chrono::nanoseconds(-1), true);
+        endLaunch(waited);
+        lock.lock();
     }
 }
 
-void Pipeline::endLaunch()
+Pipeline::Ending Pipeline::endLaunch(std::uint64_t ended) noexcept
 {
-    OxrtLaunchReport report;
-    bool cancelled;
+    Ending ending;
     {
         const std::lock_guard lock(mutex);
-        if (!active) return; // another thread waited as well and was first
-        report = launch->report();
-        cancelled = launch->cancelled();
-        if (report.faultCode != OXRT_FAULT_NONE) failedReport = report;
-        context->endLaunch(ticket);
-        active = false;
+        if (ticket != ended) return ending; // another thread waited as well and was first
+        ending.report = launch->report();
+        ending.cancelled = launch->cancelled();
+        if (ending.report.faultCode != OXRT_FAULT_NONE) failedReport = ending.report;
+        ticket = 0;
         begun = false;
     }
-    idle.notify_one();
-    throwResult(report, cancelled);
+    idle.notify_all();
+    context->endLaunch(ended);
+    return ending;
 }
 
-void Pipeline::throwResult(const OxrtLaunchReport& report, bool cancelled) const
+void Pipeline::throwResult(const Ending& ending) const
 {
+    const OxrtLaunchReport& report = ending.report;
     if (report.faultCode != OXRT_FAULT_NONE) {
         const std::string place = report.path[0] ? formatText("%s:%u: ", report.path, report.line) : std::string();
         fail(context->validation ? OXRT_ERROR_VALIDATION_FAILURE : OXRT_ERROR_LAUNCH_FAILURE, "%slaunch index (%u, %u, %u): %s (code %d)",
              place.c_str(), report.index[0], report.index[1], report.index[2], report.message, report.faultCode);
     }
-    if (cancelled) fail(OXRT_ERROR_LAUNCH_CANCELLED, "the launch was cancelled");
+    if (ending.cancelled) fail(OXRT_ERROR_LAUNCH_CANCELLED, "the launch was cancelled");
 }
 
 void Pipeline::cancelLaunch()
 {
     const std::lock_guard lock(mutex);
-    if (active) launch->cancel();
+    if (ticket != 0) launch->cancel();
 }
 
 OxrtLaunchReport Pipeline::lastReport() const

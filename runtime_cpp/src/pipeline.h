@@ -36,7 +36,7 @@ public:
     void runLaunch(const void* params, std::size_t paramsSize, const OxrtShaderBindingTable* sbt, LaunchSize size);
     // True when the launch ended; throws what it ended with.
     bool waitLaunch(std::chrono::nanoseconds timeout);
-    // Waits for a launch that somebody began, if there is one, and drops its result.
+    // Waits until no launch runs; the result of one that nobody waits for is dropped.
     void finishLaunch() noexcept;
     void cancelLaunch();
 
@@ -46,6 +46,10 @@ public:
     const std::shared_ptr<Context> context;
 
 private:
+    struct Ending {
+        OxrtLaunchReport report = {};
+        bool cancelled = false;
+    };
     struct CloseLibrary {
         void operator()(void* library) const;
     };
@@ -55,9 +59,9 @@ private:
     const OxrtProgram& raygenOf(const OxrtShaderBindingTable& sbt) const;
     OxrtLaunch describeLaunch(const OxrtShaderBindingTable& sbt, LaunchSize size) const;
     const OxrtProgram& checkLaunch(const void* params, std::size_t paramsSize, const OxrtShaderBindingTable* sbt, LaunchSize size) const;
-    void prepareLaunch(const void* params, std::size_t paramsSize, const OxrtShaderBindingTable* sbt, LaunchSize size);
-    void endLaunch();
-    void throwResult(const OxrtLaunchReport& report, bool cancelled) const;
+    std::uint64_t prepareLaunch(const void* params, std::size_t paramsSize, const OxrtShaderBindingTable* sbt, LaunchSize size);
+    Ending endLaunch(std::uint64_t ended) noexcept;
+    void throwResult(const Ending& ending) const;
 
     const std::string path;
     std::unique_ptr<void, CloseLibrary> library;
@@ -68,9 +72,8 @@ private:
     std::unique_ptr<Launch> launch;
     mutable std::mutex mutex;
     std::condition_variable idle;
-    bool active = false; // between begin and the wait that saw the end
-    bool begun = false;  // offered to the pool
-    std::uint64_t ticket = 0;
+    std::uint64_t ticket = 0; // of the launch between its begin and the wait that saw its end, else 0
+    bool begun = false;       // it waits for oxrtLaunchWait
     OxrtLaunchReport failedReport = {};
 };
 

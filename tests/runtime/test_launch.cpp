@@ -369,6 +369,46 @@ TEST(destroyingWhileALaunchWaits)
     CHECK_SUCCESS(oxrtLaunchBegin(fixture.pipeline, &params, sizeof params, &again, 64, 64, 1));
 }
 
+TEST(destroyingAContextWaitsForOtherThreads)
+{
+    OxrtContextOptions options = {};
+    options.threads = 2;
+    OxrtContext context = nullptr;
+    OxrtPipeline pipeline = nullptr;
+    CHECK_SUCCESS(oxrtContextCreate(&options, &context));
+    CHECK_SUCCESS(oxrtPipelineLoad(context, TINY_PIPELINE, &pipeline));
+    RecordBytes record;
+    OxrtProgramGroupDesc group = {};
+    group.kind = OXRT_PROGRAM_GROUP_KIND_RAYGEN;
+    group.raygen = "__raygen__gate";
+    CHECK_SUCCESS(oxrtSbtRecordPackHeader(pipeline, &group, 0, record.bytes));
+    std::vector<TinyHit> hits(64);
+    std::atomic<std::uint32_t> started{0};
+    std::uint32_t gate = 0;
+    TinyParams params = {};
+    params.hits = hits.data();
+    params.visits = &gate;
+    params.started = &started;
+    OxrtResult result = OXRT_ERROR_INTERNAL_ERROR;
+    std::thread launcher([&] {
+        OxrtShaderBindingTable sbt = {};
+        sbt.raygenRecord = record.bytes;
+        result = oxrtLaunch(pipeline, &params, sizeof params, &sbt, 8, 8, 1);
+    });
+    while (started == 0) std::this_thread::yield();
+    std::atomic<bool> destroyed{false};
+    std::thread destroyer([&] {
+        CHECK_SUCCESS(oxrtContextDestroy(context));
+        destroyed = true;
+    });
+    std::this_thread::sleep_for(20ms);
+    CHECK(!destroyed);
+    __atomic_store_n(&gate, 1u, __ATOMIC_RELEASE);
+    launcher.join();
+    destroyer.join();
+    CHECK_EQUAL(result, OXRT_SUCCESS);
+}
+
 TEST(aContextDoesNotSurviveFork)
 {
     Fixture fixture(2);
