@@ -10,6 +10,7 @@
 #include <link.h>
 #include <memory>
 #include <mutex>
+#include <sys/stat.h>
 #include <vector>
 
 namespace oxrt {
@@ -34,13 +35,19 @@ std::string findLoadedEmbree()
     return path;
 }
 
+bool isSameFile(const char* first, const char* second)
+{
+    struct stat a, b;
+    return stat(first, &a) == 0 && stat(second, &b) == 0 && a.st_dev == b.st_dev && a.st_ino == b.st_ino;
+}
+
 void* openLibrary(const char* embreePath, EmbreeLibrary& library)
 {
     const std::string loaded = findLoadedEmbree();
     if (!loaded.empty()) {
         if (void* handle = dlopen(loaded.c_str(), RTLD_NOW | RTLD_NOLOAD)) {
             library.path = loaded;
-            if (embreePath && loaded != embreePath) library.ignoredPath = embreePath;
+            if (embreePath && !isSameFile(loaded.c_str(), embreePath)) library.ignoredPath = embreePath;
             return handle;
         }
     }
