@@ -8,6 +8,14 @@ namespace {
 
 constexpr int SAMPLES = 16;
 
+// Direction number `index` about +z, one from each of 4x4 strata.
+template <class F> BENCH_INLINE Vec<F> sample(UintOf<F> index, Random<F>& random) {
+    using U = UintOf<F>;
+    const F column = toFloat(index & U(3u)), row = toFloat(index >> 2u);
+    const F u1 = (column + random.next()) * F(0.25f), u2 = (row + random.next()) * F(0.25f);
+    return cosineHemisphere(u1, u2);
+}
+
 template <NormalFrom from> void scalar(BenchJob& job) {
     launchPixels(job, [&](Worker& worker, uint32_t x, uint32_t y) {
         const uint32_t row = imageRow(job, y);
@@ -23,8 +31,7 @@ template <NormalFrom from> void scalar(BenchJob& job) {
             Random<float> random{pcgHash(row * job.width + x)};
             worker.rays += SAMPLES;
             for (int i = 0; i < SAMPLES; i++) {
-                const float u1 = random.next(), u2 = random.next();
-                const Float3 local = cosineHemisphere(u1, u2);
+                const Float3 local = sample<float>(uint32_t(i), random);
                 if (!occluded(job, origin, local.x * s + local.y * t + local.z * n, job.radius)) open += 1.0f;
             }
         }
@@ -47,8 +54,7 @@ template <NormalFrom from, Form form> void packet(BenchJob& job) {
             Random<Wide> random{pcgHash(block.py * WideUint(job.width) + block.px)};
             worker.rays += unsigned(SAMPLES) * countOf(hit.hit);
             for (int i = 0; i < SAMPLES; i++) {
-                const Wide u1 = random.next(), u2 = random.next();
-                const Wide3 local = cosineHemisphere(u1, u2);
+                const Wide3 local = sample<Wide>(WideUint(uint32_t(i)), random);
                 const Mask visible =
                     unoccluded(job, form, hit.hit, origin, local.x * s + local.y * t + local.z * n, Wide(job.radius));
                 open = select(visible, open + Wide(1.0f), open);
@@ -99,8 +105,7 @@ template <NormalFrom from> void samples(BenchJob& job) {
                 unsigned visible = 0;
                 for (int first = 0; first < SAMPLES; first += LANES) {
                     Random<Wide> random{WideUint(seeds[lane]) * load(jump.multiplier + first) + load(jump.increment + first)};
-                    const Wide u1 = random.next(), u2 = random.next();
-                    const Wide3 local = cosineHemisphere(u1, u2);
+                    const Wide3 local = sample<Wide>(laneIndices() + WideUint(uint32_t(first)), random);
                     visible += countOf(unoccluded(job, Form::PACKET, maskOf((1u << LANES) - 1), vector(0),
                                                   local.x * vector(3) + local.y * vector(6) + local.z * vector(9), Wide(job.radius)));
                 }

@@ -1,9 +1,10 @@
-"""Ambient occlusion: 16 cosine-distributed rays of a given length from every visible point."""
+"""Ambient occlusion: 16 cosine-distributed rays, one in each of 4 x 4 strata, from every visible point."""
+
+from camera import Camera, camera_direction, pixel_of
+from sampling import Random, cosine_hemisphere, facing, pcg_hash, random_float2, tangents
 
 import optixc as ox
-from camera import Camera, camera_direction, pixel_of
-from optixc import float3, float4
-from sampling import Random, cosine_hemisphere, facing, pcg_hash, random_float2, tangents
+from optixc import float2, float3, float4
 
 SAMPLES = 16
 
@@ -47,8 +48,9 @@ def __raygen__ambient_occlusion():
         origin = params.camera.eye + surface.t * direction + params.offset * n
         s, t = tangents(n)
         random = Random(pcg_hash(pixel.y * params.width + pixel.x))
-        for _ in range(SAMPLES):
-            local = cosine_hemisphere(random_float2(random))
+        for i in range(SAMPLES):
+            jitter = random_float2(random)
+            local = cosine_hemisphere(float2((float(i & 3) + jitter.x) * 0.25, (float(i >> 2) + jitter.y) * 0.25))
             visibility = Visibility(0.0)
             ox.trace(
                 params.scene,

@@ -1,9 +1,10 @@
 """Leaves as quads with an alpha texture: an any-hit program lets rays through where the leaf is not, for primary and for shadow rays."""
 
-import optixc as ox
 from camera import Camera, camera_direction, pixel_of
-from optixc import float2, float3, float4, uint3
 from sampling import facing
+
+import optixc as ox
+from optixc import float2, float3, float4, uint3
 
 
 @ox.struct

@@ -4,12 +4,13 @@ Depth 8, Russian roulette from the fourth bounce on. `__closesthit__matte` is th
 20 octaves of noise (colour, roughness and a bumped normal) and the principled BRDF twice at every hit.
 """
 
-import optixc as ox
 from camera import Camera, camera_direction, pixel_of
 from noise import octaves
-from optixc import float3, float4
 from principled import Principled, principled
 from sampling import Random, cosine_about, facing, pcg_hash, random_float, random_float2
+
+import optixc as ox
+from optixc import float3, float4
 
 DEPTH = 8
 ROULETTE_FROM = 3
@@ -144,7 +145,7 @@ def __closesthit__matte(path: Path, material: Matte):
     n = geometric_normal(direction)
     origin = ox.get_world_ray_origin() + ox.get_ray_tmax() * direction + params.offset * n
     random = Random(path.random)
-    wi, incoming = direct_light(origin, n, light_point(random))
+    _, incoming = direct_light(origin, n, light_point(random))
     path.radiance = 0.318309886 * material.albedo * incoming
     path.weight = material.albedo
     path.origin = origin

@@ -1,7 +1,8 @@
 """Primary rays, coloured by the interpolated vertex normal."""
 
-import optixc as ox
 from camera import Camera, camera_direction, pixel_of
+
+import optixc as ox
 from optixc import float3, float4, uint3
 
 

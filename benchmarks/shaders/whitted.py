@@ -3,8 +3,9 @@
 Shadow rays are a second ray type: glass attenuates them in an any-hit program, everything else ends them.
 """
 
-import optixc as ox
 from camera import Camera, camera_direction, pixel_of
+
+import optixc as ox
 from optixc import float3, float4
 
 RAY_TYPES = 2
