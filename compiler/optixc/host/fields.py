@@ -65,12 +65,14 @@ class ScalarField:
             if self.text == "bool":
                 if not isinstance(value, bool | np.bool_):
                     raise TypeError
-                struct.pack_into("<?", buffer, offset, value)
+                buffer[offset] = int(value)
                 return bool(value)
             if self.text in _FLOAT_CODES:
                 return self._store_float(buffer, offset, value)
             number = value.__index__()
-            struct.pack_into(_INTEGER_CODES[self.text], buffer, offset, number)
+            # pack_into would have cleared the bytes before it finds that a number does not fit.
+            data = struct.pack(_INTEGER_CODES[self.text], number)
+            buffer[offset : offset + len(data)] = data
             return value if isinstance(value, int) else number
         except (TypeError, AttributeError, struct.error, ValueError) as error:
             raise refuse(where, f"a {self.text}", value) from error
