@@ -27,7 +27,6 @@ CODES: dict[str, str] = {
     "OX208": "an enum is malformed",
     "OX209": "a file has no programs",
     "OX210": "a decorator is not known here",
-    "OX211": "a parameter list is malformed",
     "OX301": "a name is not defined",
     "OX302": "a value has the wrong type",
     "OX303": "an operator does not take these types",

@@ -27,15 +27,21 @@ from optixc.ir import types as t
 from optixc.ir.nodes import Local, is_reference_type
 
 
+_HOST_CODE = frozenset({"OX206", "OX301", "OX304", "OX310", "OX319", "OX402", "OX403", "OX405", "OX406"})
+"""Errors in a module-level expression that tell that it is not meant for shaders: they are told where a program uses the name."""
+
+
 class Checker:
     """Checks programs and instantiates helpers on demand."""
 
     def __init__(self, diagnostics: Diagnostics) -> None:
         self.diagnostics = diagnostics
         self.helpers: list[FunctionInstance] = []
-        self._hooks = Hooks(check_expression, self._helper, self._constant, self._expression_of)
+        self._hooks = Hooks(check_expression, self._helper, self._constant, self.host_constant, self._expression_of)
         self._instances: dict[tuple[FunctionSymbol, tuple[t.Type, ...]], FunctionInstance] = {}
         self._constants: dict[ast.expr, FunctionInstance] = {}
+        self._host_constants: dict[ast.expr, str] = {}
+        self._in_progress: set[ast.expr] = set()
         self._names: set[str] = set()
         self._failed: set[FunctionInstance] = set()
 
@@ -150,21 +156,44 @@ class Checker:
         check_returns(c, symbol, declared, falls_through)
         c.instance.is_complete = True
 
-    def _constant(self, c: Context, symbol: ConstantSymbol) -> ConstantUse:
-        """A module constant, checked once in a body of its own."""
+    def _constant(self, c: Context, symbol: ConstantSymbol) -> ConstantUse | None:
+        """A module constant, checked once in a body of its own; None where it is host code."""
         body = self._constants.get(symbol.node)
-        if body is None:
+        if symbol.node in self._in_progress:
+            self._host_constants[symbol.node] = "it is defined in terms of itself"
+        elif body is None:
+            self._in_progress.add(symbol.node)
+            found, self.diagnostics.found = self.diagnostics.found, []
             body = self._expression_of(symbol.scope, symbol.node)
-            info = body.info[symbol.node]
-            if symbol.annotation is not None and info.type != INVALID:
-                type_ = resolve_type(symbol.scope, symbol.annotation, self.diagnostics)
-                context = Context(symbol.scope, body, self.diagnostics, self._hooks)
-                if type_ is not None and not can_convert(info.type, type_):
-                    message = f"the constant must be {type_}, this is {describe(info.type)}"
-                    context.error("OX302", symbol.node, message, remedy(info.type, type_))
-                elif type_ is not None:
-                    context.coerce(symbol.node, type_, "the constant")
+            problems, self.diagnostics.found = self.diagnostics.found, found
+            host_code = next((problem for problem in problems if problem.code in _HOST_CODE), None)
+            if host_code is not None:
+                self._host_constants[symbol.node] = host_code.message
+            else:
+                found += problems
+                self._annotate_constant(symbol, body)
+            self._in_progress.discard(symbol.node)
+        if symbol.node in self._host_constants:
+            return None
+        assert body is not None
         return ConstantUse(symbol, body)
+
+    def _annotate_constant(self, symbol: ConstantSymbol, body: FunctionInstance) -> None:
+        """Convert a constant to the type that its definition states."""
+        info = body.info[symbol.node]
+        if symbol.annotation is None or info.type == INVALID:
+            return
+        type_ = resolve_type(symbol.scope, symbol.annotation, self.diagnostics)
+        context = Context(symbol.scope, body, self.diagnostics, self._hooks)
+        if type_ is not None and not can_convert(info.type, type_):
+            message = f"the constant must be {type_}, this is {describe(info.type)}"
+            context.error("OX302", symbol.node, message, remedy(info.type, type_))
+        elif type_ is not None:
+            context.coerce(symbol.node, type_, "the constant")
+
+    def host_constant(self, symbol: ConstantSymbol) -> str:
+        """Why a module-level name is no constant of shaders."""
+        return self._host_constants[symbol.node]
 
     def _expression_of(self, scope: Declarations, node: ast.expr) -> FunctionInstance:
         """An expression at module level: a constant or a default."""

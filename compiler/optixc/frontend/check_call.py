@@ -50,11 +50,11 @@ def check_call(c: Context, node: ast.Call) -> ExprInfo:
             return ExprInfo(INVALID) if target is None else construct_type(c, node, target)
         case EnumSymbol():
             return construct_type(c, node, t.INT32)
-        case SkippedName(reason=reason, span=span):
+        case SkippedName(reason=reason, span=span, code=code):
             place = f", see {span}" if span is not None else ""
             text = ast.unparse(node.func)
             note = "only helpers of shader files can be called" if not reason.startswith("a function of Python's math") else ""
-            return c.error("OX310", node.func, f"`{text}` cannot be called in a shader: it is {reason}{place}", note)
+            return c.error(code, node.func, f"`{text}` cannot be called in a shader: it is {reason}{place}", note)
         case ParamsSymbol() | ConstantSymbol() | ValueSymbol() | VectorSymbol():
             return c.error("OX319", node.func, f"`{ast.unparse(node.func)}` is a value, not a function", "")
     return _not_callable(c, node)
@@ -167,7 +167,13 @@ def _check_helper(c: Context, node: ast.Call, symbol: FunctionSymbol) -> ExprInf
     arguments = symbol.node.args
     parameters = [argument.arg for argument in (*arguments.posonlyargs, *arguments.args, *arguments.kwonlyargs)]
     defaults = default_nodes(symbol)
-    bound = bind_arguments(c, node, symbol.name, parameters, defaults) if refuse_stars(c, node) else None
+    if arguments.vararg is not None or arguments.kwarg is not None:
+        # Its definition is the mistake: the hook tells it.
+        c.hooks.helper(c, symbol, [], node)
+        return ExprInfo(INVALID)
+    if not refuse_stars(c, node):
+        return ExprInfo(INVALID)
+    bound = bind_arguments(c, node, symbol.name, parameters, defaults)
     # Check in the order of the source, so that errors and effects come in Python's order.
     for argument in (*node.args, *(keyword.value for keyword in node.keywords)):
         if not isinstance(argument, ast.Starred):

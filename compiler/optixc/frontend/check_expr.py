@@ -132,13 +132,16 @@ def symbol_value(c: Context, node: ast.expr, symbol: Symbol) -> ExprInfo:
             return ExprInfo(vector, use=VectorUse(values))
         case ConstantSymbol():
             use = c.hooks.constant(c, symbol)
+            if use is None:
+                reason = f"{c.hooks.host_constant(symbol)}, see {symbol.span}"
+                return c.error("OX310", node, f"`{name}` cannot be used in a shader: it is host code ({reason})", "only constants and helpers can")
             info = use.body.info[symbol.node]
             if isinstance(info.type, Invalid):
                 return ExprInfo(INVALID)
             return ExprInfo(info.converted or info.type, constant=info.constant, use=use)
-        case SkippedName(reason=reason, span=span):
+        case SkippedName(reason=reason, span=span, code=code):
             place = f", see {span}" if span is not None else ""
-            return c.error("OX310", node, f"`{name}` cannot be used in a shader: it is {reason}{place}", "only constants and helpers can")
+            return c.error(code, node, f"`{name}` cannot be used in a shader: it is {reason}{place}", "only constants and helpers can")
         case FunctionSymbol():
             return c.error("OX402", node, f"the function `{name}` is not a value", "call it")
         case StructSymbol() | EnumSymbol():

@@ -5,6 +5,7 @@ from __future__ import annotations
 import ast
 from collections.abc import Callable
 
+from optixc.frontend.check_assign import bind_invalid
 from optixc.frontend.check_operators import check_condition
 from optixc.frontend.context import Context, describe
 from optixc.frontend.environment import Way, join
@@ -60,7 +61,9 @@ def _check_pattern(c: Context, pattern: ast.pattern, type_: t.Type | None) -> bo
             return any([_check_pattern(c, inner, type_) for inner in patterns])
         case ast.MatchAs(pattern=None, name=None):
             return True
-        case ast.MatchAs():
+        case ast.MatchAs(name=name):
+            if name is not None:
+                bind_invalid(c, ast.copy_location(ast.Name(name, ast.Store()), pattern))
             c.error("OX407", pattern, "a pattern that binds a name is not part of restricted Python", "write `case _:` and use the subject")
             return True
     c.error("OX407", pattern, "this pattern is not part of restricted Python", "constants, `|` and `_` are")

@@ -43,7 +43,7 @@ def program_parameters(c: Context, symbol: FunctionSymbol) -> list[InstanceParam
         role = _role(kind, type_)
         if role is None or (role is not ParameterRole.VALUE and any(parameter.role is role for parameter in found)):
             what = f"a second {role.value}" if role is not None else f"a parameter of type {type_}"
-            c.error("OX315", argument, f"a {kind.value} program does not take {what}", _expectation(kind))
+            c.error("OX315", argument, f"{_a(kind.value)} program does not take {what}", _expectation(kind))
             c.poisoned.add(argument.arg)
             continue
         by_reference = role in (ParameterRole.PAYLOAD, ParameterRole.RECORD) or isinstance(type_, t.Struct | t.FixedArray)
@@ -114,8 +114,12 @@ def _kinds_text(allowed: frozenset[ProgramKind]) -> str:
         missing = [kind.value for kind in ProgramKind if kind not in allowed]
         return f"programs other than {' and '.join(missing)}"
     if len(names) == 1:
-        return f"{'an' if names[0][0] in 'aeiou' else 'a'} {names[0]} program"
+        return f"{_a(names[0])} program"
     return f"{', '.join(names[:-1])} and {names[-1]} programs"
+
+
+def _a(word: str) -> str:
+    return f"{'an' if word[0] in 'aeiou' else 'a'} {word}"
 
 
 def _check_recursion(diagnostics: Diagnostics, function: FunctionInstance) -> None:
@@ -173,7 +177,7 @@ def _check_access(
     verb = "write" if access.is_write else "read"
     letter = "w" if access.is_write else "r"
     stage = {ProgramKind.CLOSESTHIT: "ch", ProgramKind.MISS: "ms", ProgramKind.ANYHIT: "ah", ProgramKind.INTERSECTION: "is_"}[program.kind]
-    message = f"a {program.kind.value} program may not {verb} `{struct}.{field.name}`"
+    message = f"{_a(program.kind.value)} program may not {verb} `{struct}.{field.name}`"
     note = f'its payload_word() needs {stage}="{letter}" for `{program.name}`'
     diagnostics.add(function.source, "OX317", access.span, message, note, chain)
 

@@ -39,7 +39,8 @@ class Hooks:
 
     expression: Callable[[Context, ast.expr], ExprInfo]
     helper: Callable[[Context, FunctionSymbol, list[t.Type | None], ast.expr], FunctionInstance | None]
-    constant: Callable[[Context, ConstantSymbol], ConstantUse]
+    constant: Callable[[Context, ConstantSymbol], ConstantUse | None]
+    host_constant: Callable[[ConstantSymbol], str]
     expression_of: Callable[[Declarations, ast.expr], FunctionInstance]
 
 

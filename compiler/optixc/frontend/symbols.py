@@ -117,6 +117,7 @@ class SkippedName:
     name: str
     reason: str
     span: Span | None
+    code: str = "OX310"
 
 
 Symbol = (

@@ -1,0 +1,7 @@
+import optixc as ox
+
+
+@ox.program
+def __raygen__a():
+    x = max(1, 2)  # E[OX319]: `max` is a local here
+    max = 3
