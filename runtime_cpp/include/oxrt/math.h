@@ -68,6 +68,9 @@ template <Number A, Number B> OXRT_INLINE Common<A, B> max(A a, B b) { return ma
 /* max(low, min(x, high)), so that NaN gives high. */
 template <Number A, Number B, Number C> OXRT_INLINE auto clamp(A x, B low, C high) { return max(low, min(x, high)); }
 
+/* x limited to [0, 1]; NaN gives 1, as clamp does. */
+template <FloatNumber F> OXRT_INLINE F saturate(F x) { return clamp(x, F(ElementOf<F>(0)), F(ElementOf<F>(1))); }
+
 /* a + t * (b - a). */
 template <FloatNumber A, FloatNumber B, FloatNumber C> OXRT_INLINE Common<Common<A, B>, C> lerp(A a, B b, C t) {
     using R = Common<Common<A, B>, C>;
@@ -168,6 +171,7 @@ OXRT_ELEMENTWISE_1(ceil)
 OXRT_ELEMENTWISE_1(round)
 OXRT_ELEMENTWISE_1(trunc)
 OXRT_ELEMENTWISE_1(fract)
+OXRT_ELEMENTWISE_1(saturate)
 OXRT_ELEMENTWISE_1(abs)
 OXRT_ELEMENTWISE_1(sign)
 OXRT_ELEMENTWISE_1(radians)
