@@ -52,6 +52,13 @@ def refuse_stars(c: Context, node: ast.Call) -> bool:
     return True
 
 
+def check_written(c: Context, node: ast.Call) -> None:
+    """Check all arguments in the order of the source, so that errors and effects come in Python's order."""
+    for argument in (*node.args, *(keyword.value for keyword in node.keywords)):
+        if not isinstance(argument, ast.Starred):
+            c.check(argument)
+
+
 def _signature(names: Sequence[str], optional: Collection[str]) -> str:
     if not names:
         return "it takes none"

@@ -26,7 +26,6 @@ from optixc.frontend.weak import INVALID
 from optixc.ir import types as t
 from optixc.ir.nodes import Local, is_reference_type
 
-
 _HOST_CODE = frozenset({"OX206", "OX301", "OX304", "OX310", "OX319", "OX402", "OX403", "OX405", "OX406"})
 """Errors in a module-level expression that tell that it is not meant for shaders: they are told where a program uses the name."""
 
@@ -205,7 +204,9 @@ class Checker:
             context = Context(scope, body, self.diagnostics, self._hooks)
             context.check(node)
             if body.requirements or body.writes:
-                context.error("OX310", node, "a constant of the module must be known without running the program", "move it into a function")
+                context.error(
+                    "OX310", node, "a constant of the module must be known without running the program", "move it into a function"
+                )
                 body.info[node] = ExprInfo(INVALID)
         return body
 

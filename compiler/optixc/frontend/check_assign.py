@@ -204,8 +204,8 @@ def _assign_items(c: Context, target: ast.Tuple | ast.List, value: ast.expr | No
         if not check_no_alias(c, value, "an item"):
             bind_invalid(c, target)
             return
-    for element, item in zip(target.elts, items, strict=True):
-        assign_target(c, element, None, item)
+    for element, item_type in zip(target.elts, items, strict=True):
+        assign_target(c, element, None, item_type)
 
 
 def check_place(c: Context, target: ast.Attribute | ast.Subscript) -> t.Type | None:

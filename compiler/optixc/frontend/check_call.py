@@ -6,7 +6,7 @@ import ast
 
 from optixc.frontend import builtin_names as names
 from optixc.frontend.annotations import resolve_type
-from optixc.frontend.arguments import bind_arguments, refuse_stars
+from optixc.frontend.arguments import bind_arguments, check_written, refuse_stars
 from optixc.frontend.check_construct import construct_struct, construct_type
 from optixc.frontend.check_intrinsic import check_atomic, check_intrinsic
 from optixc.frontend.check_special import check_special
@@ -174,10 +174,7 @@ def _check_helper(c: Context, node: ast.Call, symbol: FunctionSymbol) -> ExprInf
     if not refuse_stars(c, node):
         return ExprInfo(INVALID)
     bound = bind_arguments(c, node, symbol.name, parameters, defaults)
-    # Check in the order of the source, so that errors and effects come in Python's order.
-    for argument in (*node.args, *(keyword.value for keyword in node.keywords)):
-        if not isinstance(argument, ast.Starred):
-            c.check(argument)
+    check_written(c, node)
     if bound is None:
         return ExprInfo(INVALID)
     filled: list[Argument] = []

@@ -5,7 +5,7 @@ from __future__ import annotations
 import ast
 import math
 
-from optixc.frontend.arguments import bind_arguments, refuse_stars
+from optixc.frontend.arguments import bind_arguments, check_written, refuse_stars
 from optixc.frontend.checked import Argument, ConstructUse, ConvertUse, DefaultArgument, DefaultExpression, ExprInfo
 from optixc.frontend.context import Context, describe, range_of
 from optixc.frontend.conversions import can_convert, fits
@@ -96,9 +96,11 @@ def _construct_vector(c: Context, node: ast.Call, target: t.Vector) -> ExprInfo:
         argument = node.args[0]
         info = c.info(argument)
         if is_number(info.type) or info.type == t.BOOL:
-            return ExprInfo(result, use=ConstructUse(target, (argument,), spread=True), writes=writes) if _component(
-                c, argument, result
-            ) else ExprInfo(INVALID)
+            return (
+                ExprInfo(result, use=ConstructUse(target, (argument,), spread=True), writes=writes)
+                if _component(c, argument, result)
+                else ExprInfo(INVALID)
+            )
         if isinstance(info.type, t.Vector) and info.type.size >= target.size:
             # float3(int3) converts, float3(float4) keeps the first components.
             return ExprInfo(result, use=ConstructUse(target, (argument,), spread=True), writes=writes)
@@ -139,15 +141,13 @@ def _construct_matrix(c: Context, node: ast.Call, target: t.Matrix) -> ExprInfo:
     row = t.Vector(t.FLOAT32, target.columns)
     writes = _writes(c, node)
     if len(node.args) == target.rows:
-        if all([c.coerce(argument, row, "a row") for argument in node.args]):
-            return ExprInfo(target, use=ConstructUse(target, tuple(node.args)), writes=writes)
-        return ExprInfo(INVALID)
-    if len(node.args) == target.rows * target.columns:
-        if all([c.coerce(argument, t.FLOAT32, "an element") for argument in node.args]):
-            return ExprInfo(target, use=ConstructUse(target, tuple(node.args)), writes=writes)
-        return ExprInfo(INVALID)
-    message = f"{target}() takes {target.rows} rows or {target.rows * target.columns} numbers, here are {len(node.args)}"
-    return c.error("OX305", node, message, f"rows are {row}")
+        fits = [c.coerce(argument, row, "a row") for argument in node.args]
+    elif len(node.args) == target.rows * target.columns:
+        fits = [c.coerce(argument, t.FLOAT32, "an element") for argument in node.args]
+    else:
+        message = f"{target}() takes {target.rows} rows or {target.rows * target.columns} numbers, here are {len(node.args)}"
+        return c.error("OX305", node, message, f"rows are {row}")
+    return ExprInfo(target, use=ConstructUse(target, tuple(node.args)), writes=writes) if all(fits) else ExprInfo(INVALID)
 
 
 def _construct_fixed_array(c: Context, node: ast.Call, target: t.FixedArray) -> ExprInfo:
@@ -166,9 +166,7 @@ def construct_struct(c: Context, node: ast.Call, symbol: StructSymbol) -> ExprIn
     """`Material(albedo, roughness=0.5)`."""
     struct = symbol.type
     bound = bind_arguments(c, node, struct.name, [field.name for field in struct.fields], symbol.defaults)
-    for argument in (*node.args, *(keyword.value for keyword in node.keywords)):
-        if not isinstance(argument, ast.Starred):
-            c.check(argument)
+    check_written(c, node)
     if bound is None:
         return ExprInfo(INVALID)
     arguments: list[Argument] = []

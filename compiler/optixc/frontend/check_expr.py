@@ -134,7 +134,9 @@ def symbol_value(c: Context, node: ast.expr, symbol: Symbol) -> ExprInfo:
             use = c.hooks.constant(c, symbol)
             if use is None:
                 reason = f"{c.hooks.host_constant(symbol)}, see {symbol.span}"
-                return c.error("OX310", node, f"`{name}` cannot be used in a shader: it is host code ({reason})", "only constants and helpers can")
+                return c.error(
+                    "OX310", node, f"`{name}` cannot be used in a shader: it is host code ({reason})", "only constants and helpers can"
+                )
             info = use.body.info[symbol.node]
             if isinstance(info.type, Invalid):
                 return ExprInfo(INVALID)
@@ -265,7 +267,9 @@ def _check_item(c: Context, node: ast.Subscript, base: ExprInfo, index: ast.expr
         case _:
             return c.error("OX312", node, f"{describe(base.type)} cannot be indexed", "arrays, vectors, matrices and tuples can")
     if isinstance(constant, int) and not 0 <= constant < size:
-        return c.error("OX312", index, f"{base.type} has no index {constant}", f"expected 0 to {size - 1}; indices do not count from the end")
+        return c.error(
+            "OX312", index, f"{base.type} has no index {constant}", f"expected 0 to {size - 1}; indices do not count from the end"
+        )
     if isinstance(c.info(index).type, type(WEAK_INT)):
         c.coerce(index, t.INT32, "an index")
     elif c.type_of(index) not in (t.INT32, t.UINT32):

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import ast
 
-from optixc.frontend.arguments import bind_arguments, refuse_stars
+from optixc.frontend.arguments import bind_arguments, check_written, refuse_stars
 from optixc.frontend.checked import Argument, AtomicUse, DefaultArgument, ExprInfo, IntrinsicUse
 from optixc.frontend.context import Context, describe
 from optixc.frontend.conversions import can_convert, common_type
@@ -27,9 +27,7 @@ def check_intrinsic(c: Context, node: ast.Call, name: str) -> ExprInfo:
         return c.error("OX305", node, f"{name}() takes two arguments, here are {len(node.args)}", f"write {name}(a, {name}(b, c))")
     optional = [parameter.name for parameter in row.parameters if parameter.default is not None]
     bound = bind_arguments(c, node, name, [parameter.name for parameter in row.parameters], optional)
-    for argument in (*node.args, *(keyword.value for keyword in node.keywords)):
-        if not isinstance(argument, ast.Starred):
-            c.check(argument)
+    check_written(c, node)
     if bound is None or any(isinstance(c.info(argument).type, Invalid) for argument in bound if argument is not None):
         require_row(c, row, name, node)
         return ExprInfo(INVALID)
@@ -136,9 +134,7 @@ def check_atomic(c: Context, node: ast.Call, row: Intrinsic) -> ExprInfo:
     """`atomic_add(array, index, value)`; the index is an integer, or a tuple with one integer per axis."""
     names = [parameter.name for parameter in row.parameters]
     bound = bind_arguments(c, node, row.name, names) if refuse_stars(c, node) else None
-    for argument in (*node.args, *(keyword.value for keyword in node.keywords)):
-        if not isinstance(argument, ast.Starred):
-            c.check(argument)
+    check_written(c, node)
     c.instance.writes = True
     if bound is None:
         return ExprInfo(INVALID)

@@ -43,7 +43,12 @@ def _refuse_else(c: Context, node: ast.While | ast.For) -> None:
 
 
 def _check_body(
-    c: Context, node: ast.While | ast.For, base: Environment, check_block: Block, target: ast.Name | None = None, type_: t.Type | None = None
+    c: Context,
+    node: ast.While | ast.For,
+    base: Environment,
+    check_block: Block,
+    target: ast.Name | None = None,
+    type_: t.Type | None = None,
 ) -> tuple[Loop, list[Way]]:
     """Check the body in a layer of its own; the ways that reach the next turn."""
     c.environment = base.fork()
@@ -128,7 +133,8 @@ def _range_of(c: Context, node: ast.For) -> tuple[t.Type, bool] | None:
     if len(call.args) == 3 and infos[2].constant == 0:
         c.error("OX314", call.args[2], "the step of range() is zero", "")
         return None
-    if not all([c.coerce(argument, type_, "a bound of range()") for argument in call.args]):
+    fits = [c.coerce(argument, type_, "a bound of range()") for argument in call.args]
+    if not all(fits):
         return None
     constants = [info.constant for info in infos if isinstance(info.constant, int)]
     return type_, len(constants) == len(infos) and len(range(*constants)) > 0

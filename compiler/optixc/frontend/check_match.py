@@ -58,7 +58,8 @@ def _check_pattern(c: Context, pattern: ast.pattern, type_: t.Type | None) -> bo
                 c.error("OX407", pattern, f"this pattern is a bool, the subject {type_}", "")
             return False
         case ast.MatchOr(patterns=patterns):
-            return any([_check_pattern(c, inner, type_) for inner in patterns])
+            found = [_check_pattern(c, inner, type_) for inner in patterns]
+            return any(found)
         case ast.MatchAs(pattern=None, name=None):
             return True
         case ast.MatchAs(name=name):

@@ -9,7 +9,7 @@ from optixc.frontend.checked import ExprInfo
 from optixc.frontend.context import Context, describe
 from optixc.frontend.conversions import common_type, weak_of
 from optixc.frontend.fold import FoldError, fold_binary, fold_comparison, fold_unary
-from optixc.frontend.weak import INVALID, CheckType, ConstantValue, Invalid, WeakInt, is_float, is_integer, is_number, is_weak
+from optixc.frontend.weak import INVALID, CheckType, ConstantValue, Invalid, WeakInt, default_type, is_float, is_integer, is_number, is_weak
 from optixc.ir import types as t
 
 OPERATOR_TEXT: dict[type[ast.AST], str] = {
@@ -181,9 +181,10 @@ def _matrix_arithmetic(c: Context, node: ast.BinOp, left: CheckType, right: Chec
     return _refuse_types(c, node, left, right, "write `@` for the matrix product")
 
 
-def _refuse_types(c: Context, node: ast.BinOp, left: CheckType, right: CheckType, note: str = "") -> None:
+def _refuse_types(c: Context, node: ast.BinOp, left: CheckType, right: CheckType, note: str = "") -> t.Type | None:
     text = OPERATOR_TEXT[type(node.op)]
     c.error("OX303", node, f"`{text}` does not take {describe(left)} and {describe(right)}", note or _meeting_note(left, right))
+    return None
 
 
 def _meeting_note(left: CheckType, right: CheckType) -> str:
@@ -296,9 +297,7 @@ def check_conditional(c: Context, node: ast.IfExp) -> ExprInfo:
     if isinstance(then.type, Invalid) or isinstance(other.type, Invalid) or isinstance(condition.type, Invalid):
         return ExprInfo(INVALID)
     common = common_type(then.type, other.type)
-    if common is not None and isinstance(common, t.Vector) and not (
-        isinstance(then.type, t.Vector) and isinstance(other.type, t.Vector)
-    ):
+    if common is not None and isinstance(common, t.Vector) and not (isinstance(then.type, t.Vector) and isinstance(other.type, t.Vector)):
         common = None
     if common is None or isinstance(common, t.Void):
         message = f"the branches are {describe(then.type)} and {describe(other.type)}"
@@ -308,8 +307,8 @@ def check_conditional(c: Context, node: ast.IfExp) -> ExprInfo:
         if isinstance(common, t.Tuple):
             c.settle(node.body)
             c.settle(node.orelse)
-            common = c.info(node.body).converted or common
+            common = default_type(common)
         for branch in (node.body, node.orelse):
-            if not c.coerce(branch, common, "this branch"):
+            if not c.coerce(branch, default_type(common), "this branch"):
                 return ExprInfo(INVALID)
     return ExprInfo(common, writes=writes, fresh=then.fresh and other.fresh)

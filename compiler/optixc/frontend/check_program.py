@@ -108,7 +108,7 @@ def _report(
 
 
 def _kinds_text(allowed: frozenset[ProgramKind]) -> str:
-    """"an anyhit program", "anyhit and closesthit programs"."""
+    """ "an anyhit program", "anyhit and closesthit programs"."""
     names = [kind.value for kind in ProgramKind if kind in allowed]
     if len(names) > len(ALL_PROGRAMS) // 2 + 1:
         missing = [kind.value for kind in ProgramKind if kind not in allowed]

@@ -68,10 +68,11 @@ def check_statement(c: Context, node: ast.stmt) -> bool:
 def _check_expression_statement(c: Context, node: ast.Expr) -> bool:
     if isinstance(node.value, ast.Constant) and isinstance(node.value.value, str):
         return True
-    if isinstance(node.value, ast.Call) and isinstance(node.value.func, ast.Name | ast.Attribute):
-        if static_symbol(c, node.value.func) == BuiltinName("print"):
-            check_print(c, node.value)
-            return True
+    func = node.value.func if isinstance(node.value, ast.Call) else None
+    if isinstance(func, ast.Name | ast.Attribute) and static_symbol(c, func) == BuiltinName("print"):
+        assert isinstance(node.value, ast.Call)
+        check_print(c, node.value)
+        return True
     info = c.check(node.value)
     match info.use:
         case IntrinsicUse(row=row) | ReportUse(row=row):

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import ast
 
-from optixc.frontend.arguments import bind_arguments
+from optixc.frontend.arguments import bind_arguments, check_written
 from optixc.frontend.check_intrinsic import require_row
 from optixc.frontend.checked import Argument, DefaultArgument, ExprInfo, TraceUse
 from optixc.frontend.context import Context, describe
@@ -15,6 +15,7 @@ from optixc.ir.intrinsic_rows import INTRINSICS
 from optixc.ir.intrinsics import Generic
 
 MAX_WORDS = 32
+_CLASS = "use an `@ox.payload` class"
 
 
 def check_trace(c: Context, node: ast.Call, name: str) -> ExprInfo:
@@ -23,9 +24,7 @@ def check_trace(c: Context, node: ast.Call, name: str) -> ExprInfo:
     names = [parameter.name for parameter in row.parameters]
     optional = [parameter.name for parameter in row.parameters if parameter.default is not None]
     bound = bind_arguments(c, node, name, [*names, "payload"], [*optional, "payload"])
-    for argument in (*node.args, *(keyword.value for keyword in node.keywords)):
-        if not isinstance(argument, ast.Starred):
-            c.check(argument)
+    check_written(c, node)
     require_row(c, row, name, node)
     c.instance.writes = True
     if bound is None:
@@ -61,7 +60,9 @@ def _check_struct_payload(c: Context, name: str, arguments: tuple[Argument, ...]
     if place.root is Root.VALUE:
         return c.error("OX318", payload, "the payload changes in the call, so it needs a name", "bind it to a local first")
     if reason is not None or place.root is Root.ELEMENT:
-        return c.error("OX307", payload, f"the payload changes in the call, but {reason or 'this is an element of an array'}", "use a local")
+        return c.error(
+            "OX307", payload, f"the payload changes in the call, but {reason or 'it is an element of an array'}", "use a local"
+        )
     note_write(c, place, payload)
     return ExprInfo(t.VOID, use=TraceUse(name, arguments, payload, type_), writes=True)
 
@@ -76,9 +77,11 @@ def _check_tuple_payload(c: Context, name: str, arguments: tuple[Argument, ...],
         # A literal without a type is a word: OptiX's payload words are unsigned.
         word: t.Type = t.UINT32 if isinstance(item, WeakInt) else t.FLOAT32 if not isinstance(item, t.Scalar) else item
         if not isinstance(item, t.Scalar | WeakInt) and str(item) != "float literal":
-            return c.error("OX318", payload, f"a payload tuple holds numbers of 32 bits, here is {describe(item)}", "use an `@ox.payload` class")
+            return c.error(
+                "OX318", payload, f"a payload tuple holds numbers of 32 bits, here is {describe(item)}", "use an `@ox.payload` class"
+            )
         if isinstance(word, t.Scalar) and (word.bits != 32 or word.kind is t.ScalarKind.BOOL):
-            return c.error("OX318", payload, f"a payload tuple holds numbers of 32 bits, here is {word}", "use an `@ox.payload` class")
+            return c.error("OX318", payload, f"a payload tuple holds numbers of 32 bits, here is {word}", _CLASS)
         words.append(word)
     target = t.Tuple(tuple(words))
     if isinstance(payload, ast.Tuple):

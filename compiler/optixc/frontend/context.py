@@ -112,10 +112,13 @@ class Context:
             self.error("OX302", node, f"{what} must be {target}, this is {describe(info.type)}", remedy(info.type, target))
             return False
         if is_weak(info.type) and info.constant is None and isinstance(node, ast.IfExp):
-            return self.coerce(node.body, value_type, what) and self.coerce(node.orelse, value_type, what) and self._convert(info, value_type)
+            return (
+                self.coerce(node.body, value_type, what) and self.coerce(node.orelse, value_type, what) and self._convert(info, value_type)
+            )
         if isinstance(node, ast.Tuple) and isinstance(value_type, t.Tuple | t.Vector):
             items = value_type.items if isinstance(value_type, t.Tuple) else (value_type.element,) * value_type.size
-            if not all([self.coerce(item, target_item, what) for item, target_item in zip(node.elts, items, strict=True)]):
+            fits_all = [self.coerce(item, target_item, what) for item, target_item in zip(node.elts, items, strict=True)]
+            if not all(fits_all):
                 return False
         if info.constant is not None and isinstance(target, t.Scalar) and not self._constant_fits(node, info, target, what):
             return False

@@ -47,9 +47,7 @@ def can_convert(source: CheckType, target: CheckType) -> bool:
         if isinstance(source, t.Tuple):
             return len(source.items) == target.size and all(can_convert(item, target.element) for item in source.items)
     if isinstance(target, t.Tuple) and isinstance(source, t.Tuple):
-        return len(source.items) == len(target.items) and all(
-            can_convert(a, b) for a, b in zip(source.items, target.items, strict=True)
-        )
+        return len(source.items) == len(target.items) and all(can_convert(a, b) for a, b in zip(source.items, target.items, strict=True))
     return False
 
 

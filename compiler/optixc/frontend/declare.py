@@ -118,7 +118,9 @@ class Declarer:
             file = self.files.find(scope.file, alias.name, 0)
             if file is not None:
                 return FileSymbol(self.declare_file(file))
-        return SkippedName(name, f"imported from module `{alias.name}`, {self.files.why_not(scope.file, alias.name)}", scope.span(node), "OX206")
+        return SkippedName(
+            name, f"imported from module `{alias.name}`, {self.files.why_not(scope.file, alias.name)}", scope.span(node), "OX206"
+        )
 
     def _import_from(self, scope: Declarations, name: str, node: ast.ImportFrom, alias: ast.alias) -> Symbol:
         module = node.module or ""
@@ -138,7 +140,9 @@ class Declarer:
             return FileSymbol(self.declare_file(inner))
         shown = "." * node.level + module
         if file is not None:
-            return SkippedName(name, f"imported from `{shown}`, but {file.source.path} defines no `{alias.name}`", scope.span(node), "OX206")
+            return SkippedName(
+                name, f"imported from `{shown}`, but {file.source.path} defines no `{alias.name}`", scope.span(node), "OX206"
+            )
         if module == "optixc":
             return SkippedName(name, f"imported from optixc, which gives shaders no `{alias.name}`", scope.span(node), "OX206")
         return SkippedName(name, f"imported from module `{shown}`, {self.files.why_not(scope.file, shown)}", scope.span(node), "OX206")

@@ -80,7 +80,9 @@ class _Struct:
         if type_ is None:
             type_ = t.VOID
         elif isinstance(type_, t.Void | t.Tuple) or (isinstance(type_, t.Struct) and type_.kind is not t.StructKind.PLAIN):
-            self._error(annotation, f"a field cannot be of type {type_}", "numbers, vectors, matrices, arrays, handles or `@ox.struct` classes")
+            self._error(
+                annotation, f"a field cannot be of type {type_}", "numbers, vectors, matrices, arrays, handles or `@ox.struct` classes"
+            )
         elif self.kind is not t.StructKind.PLAIN and _holds_array(type_):
             self._error(annotation, f"a {self.kind.value} cannot hold an array", "numbers, vectors and structs of them travel with a ray")
         semantics = None
@@ -104,12 +106,16 @@ class _Struct:
         for keyword in call.keywords:
             access = keyword.value.value if isinstance(keyword.value, ast.Constant) else None
             if keyword.arg not in _STAGES or not isinstance(access, str) or access not in _ACCESS:
-                self._error(keyword.value, "payload_word() takes caller, ch, ms, ah, is_, each \"r\", \"w\" or \"rw\"", "")
+                self._error(keyword.value, 'payload_word() takes caller, ch, ms, ah, is_, each "r", "w" or "rw"', "")
                 return None
             bits |= _ACCESS[access] << _STAGES[keyword.arg]
         reads, writes = bits & 0b0101010101, bits & 0b1010101010
         if not reads or not writes:
-            self._error(call, "a payload word must be written by somebody and read by somebody", f"this one is never {'read' if writes else 'written'}")
+            self._error(
+                call,
+                "a payload word must be written by somebody and read by somebody",
+                f"this one is never {'read' if writes else 'written'}",
+            )
             return None
         return int(PayloadSemantics(bits))
 

@@ -99,10 +99,11 @@ class _Reader:
             self._files[filename] = parse_text(text, filename, folder, self.diagnostics) if lines else None
         return self._files[filename]
 
-    def _no_source(self, name: str, reason: str) -> None:
+    def _no_source(self, name: str, reason: str) -> FunctionSymbol | None:
         source = SourceFile(f"<function {name}>", "")
         message = f"the source of `{name}` cannot be found: {reason}"
         self.diagnostics.add(source, "OX104", Span(source.path, 1, 0, 1, 0), message, "write it with `def` in a file or notebook cell")
+        return None
 
 
 def _find(tree: ast.Module, name: str, first_line: int) -> list[ast.AST] | None:
@@ -164,7 +165,9 @@ class _Captured:
                 return EnumSymbol(value.__name__, {name: int(member) for name, member in value.__members__.items()})
         shown = type(value).__name__
         if shown in VECTOR_TYPES and type(value).__module__.startswith("optixc"):
-            return VectorSymbol(VECTOR_TYPES[shown], tuple(component.item() if hasattr(component, "item") else component for component in value))
+            return VectorSymbol(
+                VECTOR_TYPES[shown], tuple(component.item() if hasattr(component, "item") else component for component in value)
+            )
         known = getattr(value, "__name__", "")
         if known and (getattr(value, "__module__", None) or "").startswith("optixc") and builtin_symbol(known) is not None:
             return builtin_symbol(known)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import ast
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from functools import partial
 
 from optixc.frontend.checked import (
@@ -119,10 +119,9 @@ def _binary(low: FunctionLowering, node: ast.BinOp, op: BinaryOp, left: Expr, ri
     type_ = low.info(node).type
     assert isinstance(type_, t.Scalar | t.Vector | t.Matrix)
     span = low.span(node)
-    if op is BinaryOp.POWER or (isinstance(type_, t.Vector) and op not in (BinaryOp.SHIFT_LEFT, BinaryOp.SHIFT_RIGHT)):
+    if op is BinaryOp.POWER:
         # `**` has no mixed form; the others take a number beside a vector as it is.
-        if op is BinaryOp.POWER:
-            left, right = convert(left, type_, span), convert(right, type_, span)
+        left, right = convert(left, type_, span), convert(right, type_, span)
     return Binary(op, left, right, type_, span)
 
 
@@ -190,9 +189,7 @@ def lower_shape(low: FunctionLowering, use: ShapeUse, type_: object, block: Bloc
     return Construct(type_, tuple(ArrayShape(array, axis, t.INT32) for axis in range(len(type_.items))))
 
 
-def lower_logical(
-    low: FunctionLowering, is_and: bool, parts: list[Callable[[Block], Expr]], block: Block, node: ast.AST
-) -> Expr:
+def lower_logical(low: FunctionLowering, is_and: bool, parts: Sequence[Callable[[Block], Expr]], block: Block, node: ast.AST) -> Expr:
     """`a and b and c`; a part that does something is only evaluated if it decides."""
     result = parts[0](block)
     for part in parts[1:]:

@@ -7,7 +7,6 @@ from dataclasses import replace
 from functools import partial
 
 from optixc.frontend.check_print import print_parts
-from optixc.frontend.checked import ElementUse, FieldUse, HelperUse
 from optixc.frontend.lower_block import Block, FunctionLowering, is_stable, literal
 from optixc.frontend.lower_call import NOTHING, tuple_item
 from optixc.frontend.lower_convert import component, convert, is_simple, read
@@ -23,17 +22,23 @@ from optixc.ir.nodes import (
     CallCallable,
     CallHelper,
     CallIntrinsic,
+    ComponentRef,
+    Construct,
     Continue,
+    ElementRef,
     Expr,
+    FieldRef,
     ForRange,
     HelperCall,
     If,
+    IndexRef,
     Literal,
     Local,
     LocalRef,
     Logical,
     Print,
     Return,
+    Stmt,
     While,
 )
 from optixc.ir.walk import subexpressions
@@ -46,7 +51,7 @@ def lower_body(low: FunctionLowering, body: list[ast.stmt], block: Block) -> Non
             _lower_statement(low, statement, block)
 
 
-def _body(low: FunctionLowering, body: list[ast.stmt]) -> tuple:  # type: ignore[type-arg]
+def _body(low: FunctionLowering, body: list[ast.stmt]) -> tuple[Stmt, ...]:
     inner = Block()
     lower_body(low, body, inner)
     return tuple(inner.statements)
@@ -118,10 +123,19 @@ def _lower_expression_statement(low: FunctionLowering, node: ast.Expr, block: Bl
 def _drop_unused_target(low: FunctionLowering, block: Block, before: int, result: Expr) -> None:
     """A call whose result nobody takes needs no temporary for it."""
     last = block.statements[-1] if len(block.statements) > before else None
+    call = _call_into(low, last, result)
+    if call is not None:
+        block.statements[-1] = replace(call, target=None)
+
+
+def _call_into(low: FunctionLowering, last: Stmt | None, result: Expr) -> CallHelper | CallIntrinsic | CallCallable | None:
+    """The call just emitted if `result` is its temporary, which is then forgotten."""
     if isinstance(last, CallHelper | CallIntrinsic | CallCallable) and isinstance(result, LocalRef) and last.target == result.local:
-        if result.local in low.temporaries:
-            low.temporaries.remove(result.local)
-            block.statements[-1] = replace(last, target=None)
+        if result.local not in low.temporaries:
+            return None
+        low.temporaries.remove(result.local)
+        return last
+    return None
 
 
 def _lower_print(low: FunctionLowering, node: ast.Call, block: Block) -> None:
@@ -154,10 +168,9 @@ def _lower_assign(low: FunctionLowering, targets: list[ast.expr], value: ast.exp
         _assign_name(low, targets[0], lower_expression(low, value, block), block, before)
         return
     if len(targets) == 1 and isinstance(targets[0], ast.Attribute | ast.Subscript):
-        target = targets[0]
-        parts = [partial(lower_expression, low, value), partial(_target_place, low, target)]
-        result, place = low.in_order_by(parts, block, [value, target], places=(1,))
-        block.emit(Assign(place, convert(result, widened(place.type), low.span(value)), low.span(target)))  # type: ignore[arg-type]
+        parts = [partial(lower_expression, low, value), partial(_target_place, low, targets[0])]
+        result, place = low.in_order_by(parts, block, [value, targets[0]], places=(1,))
+        _store(low, place, result, targets[0], block)
         return
     if len(targets) == 1 and isinstance(value, ast.Tuple) and isinstance(targets[0], ast.Tuple | ast.List):
         _assign_pairs(low, targets[0].elts, low.in_order(value.elts, block), block)
@@ -169,6 +182,12 @@ def _lower_assign(low: FunctionLowering, targets: list[ast.expr], value: ast.exp
         _assign_value(low, target, result, block)
 
 
+def _store(low: FunctionLowering, place: Expr, value: Expr, node: ast.AST, block: Block) -> None:
+    """Write a place; numbers of 8 and 16 bits are narrowed by the store."""
+    assert isinstance(place, LocalRef | FieldRef | ComponentRef | IndexRef | ElementRef)
+    block.emit(Assign(place, convert(value, widened(place.type), low.span(node)), low.span(node)))
+
+
 def _target_place(low: FunctionLowering, target: ast.expr, block: Block) -> Expr:
     return lower_place(low, target, block, keep_indices=False)
 
@@ -176,14 +195,13 @@ def _target_place(low: FunctionLowering, target: ast.expr, block: Block) -> Expr
 def _assign_name(low: FunctionLowering, target: ast.Name, value: Expr, block: Block, before: int) -> None:
     local = low.instance.bindings[target]
     last = block.statements[-1] if len(block.statements) > before else None
-    if isinstance(last, CallHelper | CallIntrinsic | CallCallable) and isinstance(value, LocalRef) and last.target == value.local:
-        if value.local in low.temporaries and local.type == value.local.type:
-            # The call writes the author's local itself.
-            low.temporaries.remove(value.local)
-            block.statements[-1] = replace(last, target=local)
-            return
-    last_copy = isinstance(last, Assign) and isinstance(value, LocalRef) and last.target == value and value.local in low.temporaries
-    if last_copy and isinstance(last, Assign) and isinstance(value, LocalRef) and local.type == value.local.type:
+    call = _call_into(low, last, value) if local.type == value.type else None
+    if call is not None:
+        # The call writes the author's local itself.
+        block.statements[-1] = replace(call, target=local)
+        return
+    is_copy = isinstance(value, LocalRef) and value.local in low.temporaries and local.type == value.type
+    if is_copy and isinstance(last, Assign) and isinstance(value, LocalRef) and last.target == value:
         low.temporaries.remove(value.local)
         block.statements[-1] = Assign(LocalRef(local), last.value, low.span(target))
         return
@@ -198,20 +216,16 @@ def _assign_value(low: FunctionLowering, target: ast.expr, value: Expr, block: B
             block.emit(Assign(LocalRef(local), convert(value, local.type, low.span(target)), low.span(target)))
         case ast.Attribute() | ast.Subscript():
             place = lower_place(low, target, block, keep_indices=False)
-            block.emit(Assign(place, convert(value, widened(place.type), low.span(target)), low.span(target)))  # type: ignore[arg-type]
+            _store(low, place, value, target, block)
         case ast.Tuple(elts=elements) | ast.List(elts=elements):
             if isinstance(value.type, t.Vector):
                 kept = value if is_simple(value) else low.keep(value, block, low.span(target), "items")
                 items = [component(kept, index) for index in range(len(elements))]
             else:
-                needs_name = not isinstance(value, LocalRef) and value not in (NOTHING,) and not _is_made(value)
+                needs_name = not isinstance(value, LocalRef | Construct)
                 kept = low.keep(value, block, low.span(target), "items") if needs_name else value
                 items = [tuple_item(kept, index) for index in range(len(elements))]
             _assign_pairs(low, elements, items, block)
-
-
-def _is_made(value: Expr) -> bool:
-    return type(value).__name__ == "Construct"
 
 
 def _assign_pairs(low: FunctionLowering, targets: list[ast.expr], values: list[Expr], block: Block) -> None:
@@ -242,7 +256,7 @@ def _lower_augmented(low: FunctionLowering, node: ast.AugAssign, block: Block) -
     place = lower_place(low, node.target, block, keep_indices=True)
     low.substitutes[operation.left] = read(place)
     value = lower_expression(low, operation, block)
-    block.emit(Assign(place, convert(value, widened(place.type), low.span(node)), low.span(node)))  # type: ignore[arg-type]
+    _store(low, place, value, node, block)
 
 
 def _lower_for(low: FunctionLowering, node: ast.For, block: Block) -> None:
@@ -312,5 +326,3 @@ def _pattern(low: FunctionLowering, pattern: ast.pattern, subject: Expr) -> Expr
                 result = Logical(False, result, condition, t.BOOL)
             return result
     return None
-
-

@@ -101,7 +101,8 @@ def check_no_alias(c: Context, node: ast.expr, what: str) -> bool:
     """Refuse a second name for a struct or fixed array that already has one."""
     info = c.info(node)
     if isinstance(node, ast.Tuple):
-        return all([check_no_alias(c, element, what) for element in node.elts])
+        fine = [check_no_alias(c, element, what) for element in node.elts]
+        return all(fine)
     if isinstance(node, ast.IfExp):
         return check_no_alias(c, node.body, what) and check_no_alias(c, node.orelse, what)
     if info.fresh or not _holds_reference(info.type):

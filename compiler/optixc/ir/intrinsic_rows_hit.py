@@ -43,11 +43,7 @@ def _vertex_rows() -> list[Intrinsic]:
         rows.append(device(optix, (), result, doc, allowed=SHADED_PROGRAMS))
         rows.append(device(f"{optix}FromHandle", _FROM_HANDLE, result, doc, state=State.THREAD))
         short = f"{snake_name(optix)}_of_geometry"
-        rows.append(
-            device(
-                f"{optix}FromHandle", _FROM_HANDLE, result, doc, state=State.THREAD, name=short, overload_of=snake_name(optix)
-            )
-        )
+        rows.append(device(f"{optix}FromHandle", _FROM_HANDLE, result, doc, state=State.THREAD, name=short, overload_of=snake_name(optix)))
     return rows
 
 

@@ -73,12 +73,8 @@ _TRACE: tuple[Intrinsic, ...] = (
         effect=Effect.WRITES,
         allowed=frozenset({IS}),
     ),
-    device(
-        "optixTerminateRay", (), t.VOID, "Accept this hit and end the traversal.", effect=Effect.ENDS_PROGRAM, allowed=frozenset({AH})
-    ),
-    device(
-        "optixIgnoreIntersection", (), t.VOID, "Drop this hit and go on.", effect=Effect.ENDS_PROGRAM, allowed=frozenset({AH})
-    ),
+    device("optixTerminateRay", (), t.VOID, "Accept this hit and end the traversal.", effect=Effect.ENDS_PROGRAM, allowed=frozenset({AH})),
+    device("optixIgnoreIntersection", (), t.VOID, "Drop this hit and go on.", effect=Effect.ENDS_PROGRAM, allowed=frozenset({AH})),
     device(
         "optixSetPayloadTypes",
         (("type_ids", t.UINT32),),
