@@ -61,8 +61,10 @@ OXRT_INLINE const OxrtTraversableView* findTraversable(const OxrtLaunch& launch,
     const uint32_t slot = uint32_t(handle);
     if (__builtin_expect(slot >= launch.traversableCount, 0))
         return nullptr;
+    /* Another thread may destroy the accel meanwhile: the view stays readable until the launch has ended. */
     const OxrtTraversableSlot& found = launch.traversables[slot];
-    return __builtin_expect(found.generation == uint32_t(handle >> 32), 1) ? found.view : nullptr;
+    const bool isCurrent = __atomic_load_n(&found.generation, __ATOMIC_ACQUIRE) == uint32_t(handle >> 32);
+    return __builtin_expect(isCurrent, 1) ? __atomic_load_n(&found.view, __ATOMIC_ACQUIRE) : nullptr;
 }
 
 /* Enter which primitive the hit is on. */
@@ -151,6 +153,30 @@ template <class Programs, bool MAY_CULL> void filterCandidate(const RTCFilterFun
 
 /* ---- custom primitives ------------------------------------------------------------------------------------------------------------- */
 
+/* Whether the ray meets a box inside its interval, faces included; in doubt it does. Embree calls back without this test where a scene
+   holds one primitive. */
+OXRT_INLINE bool meetsBox(const RTCRay& ray, const float* box, float tmin, float tmax) {
+    const float origin[3] = {ray.org_x, ray.org_y, ray.org_z};
+    const float direction[3] = {ray.dir_x, ray.dir_y, ray.dir_z};
+    float enter = tmin;
+    float leave = tmax;
+    for (int axis = 0; axis < 3; ++axis) {
+        if (direction[axis] == 0.0f) {
+            if (origin[axis] < box[axis] || origin[axis] > box[axis + 3])
+                return false;
+            continue;
+        }
+        const float a = (box[axis] - origin[axis]) / direction[axis];
+        const float b = (box[axis + 3] - origin[axis]) / direction[axis];
+        const float near = a < b ? a : b;
+        const float far = a < b ? b : a;
+        enter = near > enter ? near : enter;
+        leave = far < leave ? far : leave;
+    }
+    constexpr float rounding = 1e-6f;
+    return !(enter > leave + rounding * __builtin_fabsf(leave));
+}
+
 template <class Programs> void runIntersection(Ray& ray, RTCRay& embreeRay, RTCHit* hit, uint32_t geometry, uint32_t primitive) {
     if (ray.isTerminated)
         return;
@@ -160,6 +186,9 @@ template <class Programs> void runIntersection(Ray& ray, RTCRay& embreeRay, RTCH
     ray.objectRay = &embreeRay;
     if (embreeRay.tfar != ray.closestInEmbree)
         ray.closest = ray.closestInEmbree = embreeRay.tfar;
+    if (ray.geometry->primitiveCount == 1 && ray.geometry->keyCount == 1 &&
+        !meetsBox(embreeRay, ray.geometry->vertices + 6 * uint64_t(primitive), ray.tmin, ray.closest))
+        return;
     ray.t = ray.closest;
     ray.verdict = Verdict::Accept;
     if (const OxrtRecordHeader* record = findHitRecord(ray)) {
@@ -414,7 +443,7 @@ OXRT_INLINE void setRay(Ray& ray, OxrtThread& thread, uint64_t handle, const flo
     ray.time = Programs::usesTime ? time : 0.0f;
     ray.mask = mask & 0xFF;
     ray.flags = flags & 0xFFFF;
-    ray.sbtOffset = sbtOffset & 15;
+    ray.sbtOffset = (sbtOffset | sbtStride >> 4) & 15; /* as in OptiX: the stride's bits 4 to 7 spill into the offset */
     ray.sbtStride = sbtStride & 15;
     ray.missIndex = missIndex;
     if constexpr (Programs::isValidated) {
