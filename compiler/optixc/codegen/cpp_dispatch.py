@@ -14,13 +14,13 @@ from optixc.ir.nodes import Function, ParameterRole, Pipeline, is_reference_type
 from optixc.ir.programs import ProgramKind
 from optixc.ir.types import Struct, Void
 
-_SLOTS = {
+SLOTS = {
     ProgramKind.CLOSESTHIT: "oxrt::SLOT_CLOSESTHIT",
     ProgramKind.ANYHIT: "oxrt::SLOT_ANYHIT",
     ProgramKind.INTERSECTION: "oxrt::SLOT_INTERSECTION",
     ProgramKind.MISS: "0",
 }
-_FUNCTIONS = {
+FUNCTIONS = {
     ProgramKind.CLOSESTHIT: "closestHit",
     ProgramKind.ANYHIT: "anyHit",
     ProgramKind.INTERSECTION: "intersection",
@@ -52,7 +52,7 @@ class Dispatch:
                 type_ = "uint32_t" if constant == "maxTraceDepth" else "bool"
                 self._writer.line(f"static constexpr {type_} {constant} = {value};")
             for kind, _ in _present(programs):
-                self._writer.line(f"static void {_FUNCTIONS[kind]}(oxrt::Ray& trace, Payload& payload, const OxrtRecordHeader& record);")
+                self._writer.line(f"static void {FUNCTIONS[kind]}(oxrt::Ray& trace, Payload& payload, const OxrtRecordHeader& record);")
         self._writer.line()
 
     def _constants(self, programs: ProgramClass) -> list[tuple[str, str]]:
@@ -80,8 +80,8 @@ class Dispatch:
             uses_payload = any("payload" in call for _, call in calls)
             trace = "oxrt::Ray& trace" if uses_ray or self._pipeline.options.validation else "oxrt::Ray&"
             payload = "Payload& payload" if uses_payload else "Payload&"
-            with self._writer.block(f"void {owner}::{_FUNCTIONS[kind]}({trace}, {payload}, const OxrtRecordHeader& record)"):
-                self._switch(f"record.programs[{_SLOTS[kind]}]", calls, mismatch="*trace.thread")
+            with self._writer.block(f"void {owner}::{FUNCTIONS[kind]}({trace}, {payload}, const OxrtRecordHeader& record)"):
+                self._switch(f"record.programs[{SLOTS[kind]}]", calls, mismatch="*trace.thread")
             self._writer.line()
 
     def _switch(self, number: str, calls: list[tuple[Function, str]], mismatch: str | None) -> None:

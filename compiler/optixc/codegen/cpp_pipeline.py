@@ -50,7 +50,7 @@ class PipelineFile:
         self._writer.line()
         self._types.definitions(self._writer)
         self._declarations()
-        for function in (*_callees_first(self._pipeline.helpers), *self._pipeline.programs):
+        for function in (*callees_first(self._pipeline.helpers), *self._pipeline.programs):
             ScalarFunction(self._writer, function, self._types, self._signatures, options_of(self._pipeline)).write()
         for programs in self._classes.values():
             self._dispatch.define_class(programs)
@@ -142,12 +142,15 @@ class PipelineFile:
                 run = f"run_{self._signatures.function(program.name)}" if program.kind is ProgramKind.RAYGEN else "nullptr"
                 assert program.kind is not None
                 self._writer.line(f"{{{string_literal(program.name)}, {_KINDS[program.kind]}, {size}, {run}}},")
-        count = len(self._pipeline.programs)
-        self._writer.line(f"const OxrtPipelineVariant variants[] = {{{{OXRT_ISA_ANY, 1, programs, {count}}}}};")
+        self._writer.line(f"const OxrtPipelineVariant variants[] = {{{self._variant()}}};")
         for struct in (self._pipeline.params, *record_structs(self._pipeline)):
             if struct is not None:
                 self._writer.line(f"static_assert(sizeof({self._types.struct(struct)}) == {size_of(struct)});")
         self._writer.line()
+
+    def _variant(self) -> str:
+        """The kernels of this file: instruction set, lanes, programs."""
+        return f"{{OXRT_ISA_ANY, 1, programs, {len(self._pipeline.programs)}}}"
 
     def _exported_symbol(self) -> None:
         params = self._pipeline.params
@@ -190,7 +193,7 @@ def recursive_helpers(helpers: tuple[Function, ...]) -> set[str]:
     return {name for name, found in reach.items() if name in found}
 
 
-def _callees_first(helpers: tuple[Function, ...]) -> list[Function]:
+def callees_first(helpers: tuple[Function, ...]) -> list[Function]:
     """The helpers in their order, but each after those that it calls; members of a cycle in their order."""
     by_name = {helper.name: helper for helper in helpers}
     ordered: dict[str, Function] = {}

@@ -185,13 +185,70 @@ template <int W, class F, class A, class... I> OXRT_INLINE void eachElement(Lane
     }, array, indices...);
 }
 
-/* ---- fixed arrays, vectors and matrices by a varying index -------------------------------------------------------------------- */
+/* A uniform element in a part of an expression that no lane may want. */
+template <int W, class T, int RANK, class... I> OXRT_INLINE T loadShared(Lanes<bool, W> mask, const Array<T, RANK>& array, I... indices) {
+    return any(mask) ? array.at(indices...) : T{};
+}
 
-/* Item `index` of a fixed array, zero outside of it; component or row of a vector or matrix. */
-template <class T, int SIZE, class I, int W> OXRT_INLINE T loadItem(const FixedArray<T, SIZE>& array, Lanes<I, W> index) {
-    T result = spread<W>(T{});
-    for (int i = 0; i < SIZE; ++i)
-        assign(index == I(i), result, array.items[i]);
+/* ---- items of fixed arrays, vectors and matrices, by an index that may vary --------------------------------------------------- */
+
+template <class T, int SIZE> OXRT_INLINE T& itemOf(FixedArray<T, SIZE>& array, int i) { return array.items[i]; }
+template <class T, int N> OXRT_INLINE T& itemOf(Vector<T, N>& vector, int i) { return vector[i]; }
+template <class T, int R, int C> OXRT_INLINE Vector<T, C>& itemOf(Matrix<T, R, C>& matrix, int i) { return matrix[i]; }
+template <class T> inline constexpr int itemCount = vectorSize<T> + fixedArraySize<T>;
+template <class T, int R, int C> inline constexpr int itemCount<Matrix<T, R, C>> = R;
+
+/* Item `index`, zero where there is none. */
+template <int W, class B, class I> OXRT_INLINE auto loadItem(const B& base, I index) {
+    B copy = base;
+    using Item = PlainType<decltype(itemOf(copy, 0))>;
+    if constexpr (Scalar<I>) {
+        Item result{};
+        for (int i = 0; i < itemCount<B>; ++i)
+            if (index == I(i))
+                result = itemOf(copy, i);
+        return result;
+    } else {
+        auto result = asWide<W>(Item{});
+        for (int i = 0; i < itemCount<B>; ++i)
+            assign(index == ElementOf<I>(i), result, asWide<W>(itemOf(copy, i)));
+        return result;
+    }
+}
+
+/* f(item, lanes of the mask that name it) for every item. */
+template <int W, class B, class I, class F> OXRT_INLINE void eachItem(Lanes<bool, W> mask, B& base, I index, F f) {
+    for (int i = 0; i < itemCount<B>; ++i)
+        f(itemOf(base, i), mask & (index == ElementOf<I>(i)));
+}
+
+/* ---- lane by lane ------------------------------------------------------------------------------------------------------------- */
+
+/* The value of one lane: of lanes, and of uniform values. */
+template <class T> OXRT_INLINE const T& inLane(const T& value, int) { return value; }
+template <class T, int W> OXRT_INLINE T inLane(const Lanes<T, W>& value, int lane) { return value[lane]; }
+template <class T, int W, int N> OXRT_INLINE Vector<T, N> inLane(const Vector<Lanes<T, W>, N>& value, int lane) {
+    return mapComponents<N>([lane](const Lanes<T, W>& x) { return x[lane]; }, value);
+}
+template <class T, int W, int R, int C> OXRT_INLINE Matrix<T, R, C> inLane(const Matrix<Lanes<T, W>, R, C>& value, int lane) {
+    Matrix<T, R, C> result;
+    for (int i = 0; i < R; ++i)
+        result[i] = inLane(value[i], lane);
+    return result;
+}
+template <class T, int RANK, int W> OXRT_INLINE Array<T, RANK> inLane(const VaryingArray<Array<T, RANK>, W>& value, int lane) {
+    Array<T, RANK> result;
+    result.data = reinterpret_cast<T*>(value.data[lane]);
+    for (int axis = 0; axis < RANK; ++axis)
+        result.shape[axis] = value.shape[axis][lane];
+    return result;
+}
+
+/* f(lane) in every lane of the mask, lowest first; the results as lanes, zero elsewhere. */
+template <int W, class F> OXRT_INLINE auto mapActive(Lanes<bool, W> mask, F f) {
+    using R = decltype(f(0));
+    Wide<PlainType<R>, W> result = spread<W>(PlainType<R>{});
+    eachLane(mask, [&](int lane) { insertLane(result, f(lane), lane); });
     return result;
 }
 

@@ -8,7 +8,7 @@
 #ifndef OXRT_LANES_TRACE_H
 #define OXRT_LANES_TRACE_H
 
-#include <oxrt/lanes_ray.h>
+#include <oxrt/lanes_loops.h>
 
 namespace oxrt {
 inline namespace OXRT_ISA {

@@ -36,7 +36,7 @@ template <class T, int W> struct WideType<Word<T>, W> { using Type = Wide<T, W>;
 
 /* Arrays that may be another one in every lane. */
 template <class T, int RANK, int W> struct VaryingArray<Array<T, RANK>, W> {
-    static constexpr bool isWideStruct = true;
+    using IsWideStruct = void;
     Lanes<uint64_t, W> data;
     Lanes<uint64_t, W> shape[RANK];
     template <class F, class... S> static OXRT_INLINE void each(const F& f, S&... arrays) {
@@ -48,10 +48,11 @@ template <class T, int RANK, int W> struct VaryingArray<Array<T, RANK>, W> {
 
 template <class T> struct PlainTypeOf { using Type = T; };
 template <class T> struct PlainTypeOf<T&> { using Type = T; };
+template <class T> struct PlainTypeOf<const T&> { using Type = T; };
 template <class T> using PlainType = typename PlainTypeOf<T>::Type;
 
 /* A struct that generated code made wide, or a varying array. */
-template <class T> concept WideStruct = requires { T::isWideStruct; };
+template <class T> concept WideStruct = requires { typename T::IsWideStruct; };
 template <class T> inline constexpr bool isTuple = false;
 template <class... T> inline constexpr bool isTuple<Tuple<T...>> = true;
 template <class T> inline constexpr bool isMatrix = false;
@@ -143,6 +144,14 @@ template <int W, class T> OXRT_INLINE Wide<T, W> spread(const T& value) {
     T copy = value;
     eachPart([](auto& to, auto& from) { to = ElementOf<PlainType<decltype(to)>>(partOf(from)); }, result, copy);
     return result;
+}
+
+/* The value as its wide form, if it is not wide already. */
+template <int W, class T> OXRT_INLINE auto asWide(const T& value) {
+    if constexpr (requires { typename WideType<T, W>::Type; })
+        return spread<W>(value);
+    else
+        return value;
 }
 
 /* f(lane) for every lane of the mask, lowest first. */

@@ -1,0 +1,152 @@
+"""Calls and stores of the SPMD emitter that act: helpers, device functions with effects, traces, array elements."""
+
+from __future__ import annotations
+
+from optixc.codegen.cpp_signatures import FunctionNames, Signatures
+from optixc.codegen.cpp_spmd_expr import LaneExpressions
+from optixc.codegen.cpp_spmd_types import WideTypes
+from optixc.codegen.cpp_types import field_name
+from optixc.codegen.names import string_literal
+from optixc.codegen.needs import Options
+from optixc.codegen.program_classes import known_flags
+from optixc.ir.intrinsic_rows import INTRINSICS
+from optixc.ir.intrinsics import State
+from optixc.ir.nodes import (
+    CallHelper,
+    CallIntrinsic,
+    ComponentRef,
+    ElementRef,
+    Expr,
+    FieldRef,
+    IndexRef,
+    LocalRef,
+    Print,
+    Trace,
+    is_reference_type,
+)
+from optixc.ir.types import Struct
+from optixc.passes.uniformity import Clone
+
+_HANDLE_ARGUMENT, _FLAGS_ARGUMENT = 0, 7
+
+
+class LaneCalls:
+    """Texts of the calls of one clone."""
+
+    def __init__(
+        self, clone: Clone, names: FunctionNames, printer: LaneExpressions, signatures: Signatures, types: WideTypes, options: Options
+    ) -> None:
+        self._clone = clone
+        self._names = names
+        self._expressions = printer
+        self._signatures = signatures
+        self._types = types
+        self._options = options
+
+    @property
+    def _mask(self) -> str:
+        return self._expressions.lanes.mask
+
+    # ---- stores --------------------------------------------------------------------------------------------------------------
+
+    def store(self, target: Expr, element: ElementRef, value: Expr) -> str:
+        """A store to an array element, or to a part of one."""
+        array = self._expressions.text(element.array)
+        indices = ", ".join(self._expressions.text(index) for index in element.indices)
+        if target is element:
+            wide = self._expressions.wide(value)
+            if self._options.is_checked:
+                return f"oxrt::checked({self._names.thread}, {self._mask}).store({wide}, {array}, {indices});"
+            return f"oxrt::store<LANES>({self._mask}, {wide}, {array}, {indices});"
+        part = self._part(target, element)
+        setting = f"[&, value = {self._expressions.wide(value)}](auto& element, int lane) {{ oxrt::extractLane({part}, value, lane); }}"
+        inside = f"oxrt::checked({self._names.thread}, {self._mask}).inside({array}, {indices})"
+        return f"oxrt::eachElement<LANES>({inside if self._options.is_checked else self._mask}, {setting}, {array}, {indices});"
+
+    def _part(self, place: Expr, element: ElementRef) -> str:
+        """A part of the scalar `element` of one lane."""
+        match place:
+            case FieldRef(base=base, name=name):
+                assert isinstance(base.type, Struct)
+                return f"{self._part(base, element)}.{field_name(base.type, name)}"
+            case ComponentRef(base=base, components=(component,)):
+                return f"{self._part(base, element)}.{'xyzw'[component]}"
+            case IndexRef(base=base, index=index):
+                return f"{self._part(base, element)}[oxrt::inLane({self._expressions.text(index)}, lane)]"
+            case _:
+                assert place is element
+                return "element"
+
+    def store_item(self, target: Expr, indexed: IndexRef, value: Expr) -> str:
+        """A store to an item of a local's fixed array, vector or matrix by an index that varies, or to a part of that item."""
+        base = self._expressions.place(indexed.base)
+        part = self._part_of_item(target, indexed)
+        setting = f"[&, value = {self._expressions.wide(value)}](auto& item, Mask own) {{ oxrt::assign(own, {part}, value); }}"
+        return f"oxrt::eachItem({self._mask}, {base}, {self._expressions.text(indexed.index)}, {setting});"
+
+    def _part_of_item(self, place: Expr, item: IndexRef) -> str:
+        match place:
+            case IndexRef() if place is item:
+                return "item"
+            case FieldRef(base=base, name=name):
+                assert isinstance(base.type, Struct)
+                return f"{self._part_of_item(base, item)}.{field_name(base.type, name)}"
+            case ComponentRef(base=base, components=(component,)):
+                return f"{self._part_of_item(base, item)}.{'xyzw'[component]}"
+            case IndexRef(base=base, index=index):
+                return f"{self._part_of_item(base, item)}[{self._expressions.text(index)}]"
+            case _:
+                raise AssertionError("the place is no part of the item")
+
+    # ---- calls ---------------------------------------------------------------------------------------------------------------
+
+    def helper(self, statement: CallHelper) -> tuple[str, bool]:
+        """The text, and whether the result varies."""
+        arguments = tuple(self._argument(argument) for argument in statement.arguments)
+        callee = self._expressions.lanes.callee(statement.function, statement.arguments)
+        return self._expressions.lanes.helper_call(statement.function, statement.arguments, arguments), callee.result_varies
+
+    def intrinsic(self, statement: CallIntrinsic) -> tuple[str, bool] | None:
+        """A device function with an effect: each lane's own call, lowest lane first."""
+        row = INTRINSICS[statement.name]
+        arguments = [f"oxrt::inLane({self._expressions.text(argument)}, lane)" for argument in statement.arguments]
+        assert row.state in (State.NONE, State.THREAD), f"{statement.name} has no form over lanes"
+        hidden = [f"{self._names.thread}.atLane(lane)"] if row.state is State.THREAD else []
+        call = f"{row.cpp}({', '.join([*hidden, *arguments])})"
+        if statement.target is None:
+            return f"oxrt::eachLane({self._mask}, [&](int lane) {{ {call}; }})", True
+        return f"oxrt::mapActive({self._mask}, [&]([[maybe_unused]] int lane) {{ return {call}; }})", True
+
+    def print(self, statement: Print) -> str:
+        items = [
+            string_literal(item) if isinstance(item, str) else f"oxrt::inLane({self._expressions.text(item)}, lane)"
+            for item in statement.items
+        ]
+        words = [f"{self._names.thread}.atLane(lane)", string_literal(statement.separator), string_literal(statement.end), *items]
+        return f"oxrt::eachLane({self._mask}, [&](int lane) {{ oxrt::print({', '.join(words)}); }});"
+
+    def trace(self, statement: Trace) -> list[str]:
+        """The trace; where the handle or unknown flags vary, once for each value among the lanes."""
+        programs = f"{self._signatures.program_class(statement.payload_type)}Lanes"
+        payload = "oxrt::noPayload" if statement.payload is None else self._expressions.place(statement.payload)
+        arguments = [self._expressions.text(argument) for argument in statement.arguments]
+        flags = known_flags(statement)
+        mask = self._mask
+        heads: list[str] = []
+        if flags is not None:
+            arguments[_FLAGS_ARGUMENT] = f"oxrt::KnownFlags<{flags & 0xFFFF}>()"
+        for position, name in ((_HANDLE_ARGUMENT, "handle"), (_FLAGS_ARGUMENT, "flags")):
+            if self._expressions.lanes.varies(statement.arguments[position]):
+                own = f"{name}Lanes"
+                heads.append(f"oxrt::eachValue({mask}, {arguments[position]}, [&](auto {name}, Mask {own}) {{")
+                arguments[position], mask = name, own
+        call = f"oxrt::trace<{programs}>({', '.join([self._names.thread, mask, *arguments, payload])});"
+        return [*heads, call, *("});" for _ in heads)]
+
+    def _argument(self, argument: Expr) -> str:
+        """An argument of a helper; structs and fixed arrays stay places, so that they can be passed by reference."""
+        is_place = is_reference_type(argument.type) and isinstance(argument, LocalRef | FieldRef | IndexRef | ElementRef)
+        is_loaded = isinstance(argument, ElementRef) and self._expressions.lanes.varies(argument)
+        return self._expressions.place(argument) if is_place and not is_loaded else self._expressions.text(argument)
+
+
