@@ -44,7 +44,7 @@ def render(parts: list[meshes.Mesh], view: dict[str, np.ndarray], width: int, he
     )
     image = np.zeros((height, width, 4), np.float32)
     sun_direction = np.array([0.45, 0.8, 0.4]) / np.linalg.norm([0.45, 0.8, 0.4])
-    params = shader.Params(image=image, scene=scene, sun_direction=sun_direction, sun_color=(1.6, 1.5, 1.3), samples=samples, **view)
+    params = shader.Params(image=image, scene=scene, sun_direction=sun_direction, sun_color=(1.15, 1.08, 0.95), samples=samples, **view)
     pipeline.launch(params, table, width=width, height=height)
     return image
 
@@ -56,14 +56,14 @@ def main() -> None:
     parser.add_argument("--height", type=int, default=768)
     parser.add_argument("--samples", type=int, default=16, help="rays per pixel")
     parser.add_argument("--azimuth", type=float, default=30.0, help="degrees around the mesh")
-    parser.add_argument("--elevation", type=float, default=25.0, help="degrees above the horizon")
+    parser.add_argument("--elevation", type=float, default=14.0, help="degrees above the horizon")
     parser.add_argument("--exposure", type=float, default=0.0, help="stops")
     parser.add_argument("--output", type=Path, default=Path("mesh.png"))
     arguments = parser.parse_args()
 
     mesh = meshes.load(arguments.mesh) if arguments.mesh else meshes.torus_knot()
     low, high = mesh.vertices.min(axis=0), mesh.vertices.max(axis=0)
-    floor = meshes.ground(float(low[1]), 20.0 * float(np.linalg.norm(high - low)))
+    floor = meshes.ground(float(low[1]), 40.0 * float(np.linalg.norm(high - low)))
     view = camera(low, high, arguments.azimuth, arguments.elevation, arguments.width / arguments.height)
     image = render([mesh, floor], view, arguments.width, arguments.height, arguments.samples)
     ox.write_image(arguments.output, image, exposure=arguments.exposure)

@@ -75,7 +75,7 @@ def torus_knot(p: int = 2, q: int = 3, segments: int = 1024, sides: int = 64) ->
 def knot(t: np.ndarray, p: int, q: int) -> np.ndarray:
     """The centre line of the knot, (n, 3)."""
     radius = 2.0 + np.cos(q * t)
-    return 0.5 * np.stack([radius * np.cos(p * t), -np.sin(q * t), radius * np.sin(p * t)], axis=1) * 1.2
+    return 0.6 * np.stack([radius * np.cos(p * t), radius * np.sin(p * t), np.sin(q * t)], axis=1)
 
 
 def closed_grid(rows: int, columns: int) -> np.ndarray:
@@ -92,4 +92,4 @@ def ground(height: float, half_size: float) -> Mesh:
     x = half_size
     vertices = np.array([[-x, height, -x], [-x, height, x], [x, height, x], [x, height, -x]], np.float32)
     normals = np.tile(np.array([0.0, 1.0, 0.0], np.float32), (4, 1))
-    return Mesh(vertices, np.array([[0, 1, 2], [0, 2, 3]], np.uint32), normals, np.full((4, 3), 0.55, np.float32))
+    return Mesh(vertices, np.array([[0, 1, 2], [0, 2, 3]], np.uint32), normals, np.full((4, 3), 0.42, np.float32))

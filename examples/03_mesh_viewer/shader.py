@@ -112,7 +112,7 @@ def __closesthit__mesh(ray: Radiance, mesh: Mesh):
 
     # Sun with shadow; the sky's light as a hemisphere
     point = ox.transform_point_from_object_to_world_space(interpolate(p0, p1, p2, uv))
-    light = ox.lerp(float3(0.14, 0.12, 0.11), float3(0.42, 0.48, 0.56), 0.5 + 0.5 * n.y)
+    light = ox.lerp(float3(0.10, 0.09, 0.08), float3(0.26, 0.30, 0.36), 0.5 + 0.5 * n.y)
     cosine = ox.dot(n, params.sun_direction)
     if cosine > 0.0 and ox.dot(geometric, params.sun_direction) > 0.0:
         light += cosine * sun_visibility(offset_ray_origin(point, geometric)) * params.sun_color

@@ -122,7 +122,7 @@ def main() -> None:
     parser.add_argument("scene", nargs="?", default="courtyard", choices=["courtyard", "sibenik", "sponza", "dragon", "bunny"])
     parser.add_argument("--camera", type=int, default=0, help="number of the scene's camera")
     parser.add_argument("--size", type=int, default=512, help="width and height in pixels")
-    parser.add_argument("--samples", type=int, default=4, help="primary rays per pixel")
+    parser.add_argument("--samples", type=int, default=8, help="primary rays per pixel")
     parser.add_argument("--occlusion-rays", type=int, default=4, help="occlusion rays per primary ray")
     parser.add_argument("--radius", type=float, help="how far occlusion reaches, in scene units")
     parser.add_argument("--output", type=Path, default=Path("ambient_occlusion.png"))

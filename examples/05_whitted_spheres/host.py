@@ -106,7 +106,7 @@ def render(width: int, height: int, samples: int, *, verbose: bool = False) -> n
         camera=pinhole(width / height),
         sample=0,
         samples=samples,
-        light_position=(24.0, 30.0, -20.0),
+        light_position=(26.0, 26.0, 2.0),
         light_color=(0.85, 0.82, 0.75),
         ambient_color=(0.30, 0.33, 0.38),
     )

@@ -53,7 +53,7 @@ def test_visible_sphere(library: Any, sphere: tuple) -> None:
 
 def test_rectangle_light(library: Any) -> None:
     # A rectangle in front of and above the origin, facing it
-    check(library, "rectangle_light", (-0.5, -0.9, 1.0), (1.5, 0.2, 0.1, 1.2), subdivisions=32)
+    check(library, "rectangle_light", (-0.5, 0.6, 1.0), (1.5, 0.2, 0.1, -1.2), subdivisions=32)
 
 
 def test_disk(library: Any) -> None:
