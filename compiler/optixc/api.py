@@ -9,6 +9,7 @@ from typing import Any
 
 from optixc import driver
 from optixc.cache import Cache
+from optixc.enums_program import ProgramGroupKind
 from optixc.enums_scene import BuildFlags
 from optixc.errors import InvalidValueError
 from optixc.host.accel import Accel
@@ -90,6 +91,8 @@ class DeviceContext(Context):
         for group in groups:
             if not isinstance(group, ProgramGroup):
                 raise InvalidValueError(f"pipeline_create takes program groups, not {type(group).__name__}")
+        if not any(group.kind is ProgramGroupKind.RAYGEN for group in groups):
+            raise InvalidValueError("a pipeline needs a raygen group: nothing else can begin a launch")
         used = list(dict.fromkeys(program for group in groups for program in group.programs.values()))
         units = list(dict.fromkeys(program.module.unit for program in used))
         chosen = CompileOptions(

@@ -110,7 +110,7 @@ def _emit(chosen: argparse.Namespace, unit: driver.Unit, names: list[str], optio
     if chosen.emit == "asm":
         print(toolchain.compile_assembly(emitted.text, toolchain.find_compiler(store.memory), driver.recipe(options)))
     elif chosen.emit == "header":
-        print(emit_header(emitted.pipeline))
+        print(emit_header(emitted.pipeline, chosen.shader.stem))
     elif chosen.emit == "cpp":
         print(emitted.text)
     elif chosen.emit == "ir":
@@ -131,7 +131,7 @@ def _write(chosen: argparse.Namespace, unit: driver.Unit, names: list[str], opti
     try:
         stem.parent.mkdir(parents=True, exist_ok=True)
         shutil.copyfile(built.library, outputs[0])
-        outputs[1].write_text(emit_header(emitted.pipeline))
+        outputs[1].write_text(emit_header(emitted.pipeline, stem.name))
         outputs[2].write_text(json.dumps(_manifest(unit, emitted.pipeline, built), indent=2) + "\n")
         if chosen.depfile is not None:
             files = [str(chosen.shader), *unit.result.dependencies]

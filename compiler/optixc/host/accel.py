@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from optixc.enums_scene import BuildFlags
-from optixc.errors import InvalidOperationError, InvalidValueError
+from optixc.errors import InvalidValueError
 from optixc.host import library
 from optixc.host.context import Context
 from optixc.host.inputs import BuildInput, MotionOptions, pack_inputs
@@ -75,7 +75,7 @@ class Accel:
     def update(self, inputs: Sequence[BuildInput]) -> Accel:
         """Refits to the same inputs with other coordinates; needs ALLOW_UPDATE. The handle stays."""
         if not self._build_flags & BuildFlags.ALLOW_UPDATE:
-            raise InvalidOperationError("update() needs an accel that was built with BuildFlags.ALLOW_UPDATE")
+            raise InvalidValueError("update() needs an accel that was built with BuildFlags.ALLOW_UPDATE")
         packed = pack_inputs(inputs)
         library.check(library.lib().oxrtAccelUpdate(self._live(), packed.array, packed.count))
         self._children = tuple(child for one in inputs for child in one.children())
@@ -84,7 +84,7 @@ class Accel:
     def compact(self) -> Accel:
         """This accel: Embree's builds are compact already, so there is nothing to copy. Needs ALLOW_COMPACTION, as in OptiX."""
         if not self._build_flags & BuildFlags.ALLOW_COMPACTION:
-            raise InvalidOperationError("compact() needs an accel that was built with BuildFlags.ALLOW_COMPACTION")
+            raise InvalidValueError("compact() needs an accel that was built with BuildFlags.ALLOW_COMPACTION")
         self._live()
         return self
 
