@@ -15,8 +15,6 @@ from optixc.errors import InvalidValueError
 
 Simd = Literal["auto"] | int
 MAX_TRACE_DEPTH = 31
-MAX_PAYLOAD_VALUES = 32
-MAX_ATTRIBUTE_VALUES = 8
 TARGETS = ("native", "x86-64-v3", "x86-64-v4")
 BoundValue = bool | int | float | tuple[bool | int | float, ...]
 
@@ -36,15 +34,6 @@ class PipelineCompileOptions:
     uses_primitive_type_flags: PrimitiveTypeFlags = PrimitiveTypeFlags(0)
     allow_opacity_micromaps: bool = False
     allow_clustered_geometry: bool = False
-
-    def __post_init__(self) -> None:
-        if not 0 <= self.num_attribute_values <= MAX_ATTRIBUTE_VALUES:
-            raise InvalidValueError(f"num_attribute_values must be at most {MAX_ATTRIBUTE_VALUES}, not {self.num_attribute_values!r}")
-        if not 0 <= self.num_payload_values <= MAX_PAYLOAD_VALUES:
-            raise InvalidValueError(f"num_payload_values must be at most {MAX_PAYLOAD_VALUES}, not {self.num_payload_values!r}")
-        known = ExceptionFlags.STACK_OVERFLOW | ExceptionFlags.TRACE_DEPTH | ExceptionFlags.USER
-        if int(self.exception_flags) & ~int(known):
-            raise InvalidValueError(f"exception_flags holds bits that are no ExceptionFlags: {int(self.exception_flags):#x}")
 
     def __post_init__(self) -> None:
         limits = (("num_payload_values", 32), ("num_attribute_values", 8), ("exception_flags", 7), ("traversable_graph_flags", 3))
