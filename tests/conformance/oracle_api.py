@@ -67,7 +67,7 @@ def _pipeline(*names: tuple[str, str], **options: Any) -> Misuse:
 
 
 def _options(**given: Any) -> Misuse:
-    return _pipeline(RAYGEN, options=ox.PipelineCompileOptions(**given))
+    return lambda harness: _pipeline(RAYGEN, options=ox.PipelineCompileOptions(**given))(harness)
 
 
 def _launch(width: int = 1, height: int = 1, depth: int = 1, **sections: Any) -> Misuse:

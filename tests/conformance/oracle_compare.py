@@ -81,7 +81,7 @@ def ray_scale(given: dict[str, Any]) -> float:
 def unlawful(probe: Probe, index: int, result: RayResult) -> list[str]:
     """What in our log of a ray contradicts the programs themselves: payload words, decisions, shrinking interval, final payload."""
     given = probe.rays[index]["in"]
-    run = _Run(index, given, {hit["data"]["id"]: hit["data"] for hit in probe.data["hitgroups"]})
+    run = _Run(index, given, {hit["data"]["id"]: hit["data"] for hit in probe.hitgroups})
     for event in result.events:
         run.step(event)
     if not result.returned:

@@ -136,7 +136,8 @@ def _explain(probe: Probe, given: dict[str, Any], ours: list[dict[str, Any]], th
     names |= _drop_repeated(probe, left_ours, left_theirs, ours, theirs, scale)
     if _order_decides(probe, given, ours + theirs):
         names |= _drop(left_ours, left_theirs, FIRST_ACCEPTED, lambda event: _candidate(probe, given, event, known))
-    names |= _drop(left_ours, left_theirs, BEYOND, lambda event: _beyond(event, ours, theirs) and _candidate(probe, given, event, known))
+    ends = [end for events in (ours, theirs) if (end := _end(probe, events)) is not None]
+    names |= _drop(left_ours, left_theirs, BEYOND, lambda event: _beyond(event, ends) and _candidate(probe, given, event, known))
     if _coincident(probe, given, ours + theirs):
         names |= _drop(left_ours, left_theirs, COINCIDENT, lambda event: _candidate(probe, given, event, known))
     if left_ours or left_theirs:
@@ -193,13 +194,21 @@ def _order_decides(probe: Probe, given: dict[str, Any], events: list[dict[str, A
     """Whether the ray keeps the first accepted hit: by its flag, by a terminating or by a counting any-hit program."""
     if given["flags"] & TERMINATE_ON_FIRST_HIT:
         return True
-    records = {hit["data"]["id"]: hit["data"] for hit in probe.data["hitgroups"]}
+    records = {hit["data"]["id"]: hit["data"] for hit in probe.hitgroups}
     return any(event["ev"] == "AH" and records[event["rec"]]["ahMode"] in COUNTING_MODES for event in events)
 
 
-def _beyond(event: dict[str, Any], ours: list[dict[str, Any]], theirs: list[dict[str, Any]]) -> bool:
+def _end(probe: Probe, events: list[dict[str, Any]]) -> float | None:
+    """Where the hit is that is kept in the end: the closest hit's place, or without that program the nearest accepted one's."""
+    records = {hit["data"]["id"]: hit["data"] for hit in probe.hitgroups}
+    found = [number(event["tmax"]) for event in events if event["ev"] == "CH"]
+    found = found or [number(event["t"]) for event in events if event["ev"] == "RP" and event["ret"]]
+    found = found or [number(event["tmax"]) for event in events if event["ev"] == "AH" and records[event["rec"]]["ahMode"] == 0]
+    return min(found) if found else None
+
+
+def _beyond(event: dict[str, Any], ends: list[float]) -> bool:
     """Whether an any-hit or intersection call lies behind the hit that both sides keep in the end."""
-    ends = [number(last["tmax"]) for events in (ours, theirs) for last in events if last["ev"] == "CH"]
     if event["ev"] in ("IS", "RP"):
         return bool(ends)
     return event["ev"] == "AH" and bool(ends) and number(event["tmax"]) > max(ends)

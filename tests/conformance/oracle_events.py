@@ -38,12 +38,12 @@ class RayResult:
 
 def record(harness: Harness, probe: Probe, scene: dict[str, Any]) -> list[RayResult]:
     """Trace every ray of the probe through the recorder."""
-    groups, pipeline = harness.recorder(tuple(sorted({hit["kind"] for hit in probe.data["hitgroups"]})),
+    groups, pipeline = harness.recorder(tuple(sorted({hit["kind"] for hit in probe.hitgroups})),
                                         motion=probe.data["pipeline"]["usesMotionBlur"], micromaps=probe.data["pipeline"]["omm"])
     sbt = ox.ShaderBindingTable(
         raygen=groups["raygen"].record(),
         miss=[groups["miss"].record(_record(data)) for data in probe.data["miss"]],
-        hitgroup=[groups[hit["kind"], hit["ch"], hit["ah"]].record(_record(hit["data"])) for hit in probe.data["hitgroups"]])
+        hitgroup=[groups[hit["kind"], hit["ch"], hit["ah"]].record(_record(hit["data"])) for hit in probe.hitgroups])
     rays = _rays(probe, scene)
     count = len(rays)
     room = 2 * max(ray.get("nev", USUAL_EVENTS) for ray in probe.rays) + 8

@@ -45,7 +45,12 @@ def _scene(*nodes: dict[str, Any]) -> Callable[[Harness], Any]:
 
 
 def _shader(name: str) -> Callable[[Harness], Any]:
-    return lambda harness: harness.module(name)
+    """A pipeline of all programs of a shader file, so that what they call is compiled too."""
+    def use(harness: Harness) -> Any:
+        module, create = harness.module(name), harness.context.program_group_create
+        groups = [create(**{program.split("__")[1]: module[program]}) for program in module]
+        return harness.pipeline(("feature", name), groups, max_trace_depth=4)
+    return use
 
 
 def _curve(kind: str) -> dict[str, Any]:
@@ -92,11 +97,11 @@ FEATURES: dict[str, Feature] = {
     "opacity micromaps": Feature(False, _scene(_gas(MICROMAP))),
     "vertex formats": Feature(False, _scene(_gas(HALF))),
     "vertex formats of two components": Feature(False, _scene(_gas(FLOAT2))),
-    "random vertex access": Feature(False, _shader("random_access.py")),
+    "random vertex access": Feature(True, _shader("random_access.py")),
     "random instance access": Feature(False, _shader("random_instances.py")),
     "hit objects": Feature(False, _shader("hit_objects.py")),
     "traverse data": Feature(False, lambda harness: ox.make_hit_object),
-    "callables": Feature(False, _shader("callables.py")),
+    "callables": Feature(True, _shader("callables.py")),
     "exceptions": Feature(False, _shader("throwing.py")),
     "payload types": Feature(False, _shader("payload_types.py")),
     "payload of 32 words": Feature(True, _shader("payload32.py")),
@@ -116,7 +121,7 @@ def needed(probe: Probe) -> list[str]:
     for node in probe.scene:
         found.extend([NODE_FEATURES[node["kind"]]] if node["kind"] in NODE_FEATURES else [])
         found.extend(_needed_by_inputs(node))
-        children = [instance["child"] for instance in node.get("instances", [])] or [node["child"]] * ("child" in node)
+        children = [below["child"] for below in (node, *node.get("instances", [])) if "child" in below]
         if any(kinds.get(child, "GAS") != "GAS" for child in children):
             found.append("several instance levels")
     return list(dict.fromkeys(found))

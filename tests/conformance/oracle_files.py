@@ -13,6 +13,8 @@ from typing import Any
 
 DEFAULT_FOLDER = Path(__file__).resolve().parents[2] / ".." / "shared" / "oracle"
 
+HITGROUP_KINDS = {"triangles": "tri", "custom": "custom", "spheres": "sphere", "curves": "curve"}
+
 
 @dataclass(frozen=True)
 class Probe:
@@ -42,6 +44,16 @@ class Probe:
         """The recorded rays with their events; empty where the probe holds counts only."""
         rays = self.data.get("rays", [])
         return rays if isinstance(rays, list) else []
+
+    @property
+    def hitgroups(self) -> list[dict[str, Any]]:
+        """The hit records. Where none were recorded, record i has the id i and the plain programs, as many as the events name."""
+        if self.data["hitgroups"]:
+            return list(self.data["hitgroups"])
+        last = max((event["rec"] for ray in self.rays for event in ray["events"]), default=0)
+        types = [item["type"] for node in self.scene for item in node.get("buildInputs", [])]
+        kind = HITGROUP_KINDS[types[0]] if types else "tri"
+        return [{"kind": kind, "ch": True, "ah": True, "data": {"id": index, "ahMode": 0, "ahArg": 0}} for index in range(last + 1)]
 
 
 def folder() -> Path:

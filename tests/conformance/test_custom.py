@@ -24,7 +24,7 @@ def custom(*reports: dict[str, object], mode: int = 0, argument: int = 0, **more
 
 @pytest.mark.parametrize(("t", "accepted"), [(1.0, False), (3.5, False), (math.nan, False), (2.0, True), (3.0, True), (2.5, True)])
 def test_T117_reports_are_accepted_in_the_closed_interval(harness: Harness, t: float, accepted: bool) -> None:
-    (result,) = trace(harness, [gas(boxes(UNIT))], [ray(ABOVE, tmin=2.0, tmax=3.0)], custom(reported(t)))
+    (result,) = trace(harness, [gas(boxes([[0, 0, 2, 1, 1, 3]]))], [ray(ABOVE, tmin=2.0, tmax=3.0)], custom(reported(t)))
     assert [event["ret"] for event in calls(result, "RP")] == [int(accepted)]
     assert len(calls(result, "AH")) == int(accepted)
     assert missed(result) is not accepted

@@ -92,6 +92,15 @@ OXRT_INLINE const OxrtRecordHeader* findHitRecord(Ray& ray) {
 
 /* ---- candidates ------------------------------------------------------------------------------------------------------------------- */
 
+/* Whether any-hit programs run: the ray's flag beats the instance's, which beats the geometry's; ENFORCE beats DISABLE. */
+OXRT_INLINE bool anyHitEnabled(const Ray& ray, uint32_t instanceFlags, uint32_t geometryFlags) {
+    if (ray.flags & (RAY_DISABLE_ANYHIT | RAY_ENFORCE_ANYHIT))
+        return ray.flags & RAY_ENFORCE_ANYHIT;
+    if (instanceFlags & (INSTANCE_DISABLE_ANYHIT | INSTANCE_ENFORCE_ANYHIT))
+        return instanceFlags & INSTANCE_ENFORCE_ANYHIT;
+    return !(geometryFlags & GEOMETRY_DISABLE_ANYHIT);
+}
+
 /* Whether the ray's culling flags drop the candidate. */
 OXRT_INLINE bool isCulled(const Ray& ray, uint32_t instanceFlags, uint32_t geometryFlags, bool runsAnyHit) {
     if (ray.flags & (runsAnyHit ? RAY_CULL_ENFORCED_ANYHIT : RAY_CULL_DISABLED_ANYHIT))
@@ -107,11 +116,7 @@ OXRT_INLINE bool isCulled(const Ray& ray, uint32_t instanceFlags, uint32_t geome
 template <class Programs, bool MAY_CULL> OXRT_INLINE Verdict judge(Ray& ray) {
     const uint32_t instanceFlags = ray.instance ? ray.instance->flags : 0;
     const uint32_t geometryFlags = ray.geometry->recordFlags[localRecord(ray)];
-    bool runsAnyHit = !(geometryFlags & GEOMETRY_DISABLE_ANYHIT);
-    if (instanceFlags & (INSTANCE_DISABLE_ANYHIT | INSTANCE_ENFORCE_ANYHIT))
-        runsAnyHit = instanceFlags & INSTANCE_ENFORCE_ANYHIT;
-    if (ray.flags & (RAY_DISABLE_ANYHIT | RAY_ENFORCE_ANYHIT))
-        runsAnyHit = ray.flags & RAY_ENFORCE_ANYHIT;
+    const bool runsAnyHit = anyHitEnabled(ray, instanceFlags, geometryFlags);
     if constexpr (MAY_CULL)
         if (isCulled(ray, instanceFlags, geometryFlags, runsAnyHit))
             return Verdict::Ignore;
@@ -189,6 +194,10 @@ template <class Programs> void runIntersection(Ray& ray, RTCRay& embreeRay, RTCH
     if (ray.geometry->primitiveCount == 1 && ray.geometry->keyCount == 1 &&
         !meetsBox(embreeRay, ray.geometry->vertices + 6 * uint64_t(primitive), ray.tmin, ray.closest))
         return;
+    const uint32_t instanceFlags = ray.instance ? ray.instance->flags : 0;
+    const uint32_t geometryFlags = ray.geometry->recordFlags[localRecord(ray)];
+    if ((ray.flags & RAY_CULL_ANY) && isCulled(ray, instanceFlags, geometryFlags, anyHitEnabled(ray, instanceFlags, geometryFlags)))
+        return; /* before the program runs, as in OptiX */
     ray.t = ray.closest;
     ray.verdict = Verdict::Accept;
     if (const OxrtRecordHeader* record = findHitRecord(ray)) {
