@@ -30,6 +30,9 @@ _HOST_CODE = frozenset({"OX206", "OX301", "OX304", "OX310", "OX319", "OX402", "O
 """Errors in a module-level expression that tell that it is not meant for shaders: they are told where a program uses the name."""
 
 
+MAX_CALL_DEPTH = 100
+
+
 class Checker:
     """Checks programs and instantiates helpers on demand."""
 
@@ -42,6 +45,7 @@ class Checker:
         self._host_constants: dict[ast.expr, str] = {}
         self._in_progress: set[ast.expr] = set()
         self._names: set[str] = set()
+        self._depth = 0
         self._failed: set[FunctionInstance] = set()
 
     def check_program(self, symbol: FunctionSymbol) -> FunctionInstance:
@@ -83,6 +87,9 @@ class Checker:
             if not instance.is_complete:
                 return self._recursive(c, symbol, instance, node)
             return instance if instance not in self._failed else None
+        if self._depth >= MAX_CALL_DEPTH:
+            c.error("OX103", node, f"helpers call each other more than {MAX_CALL_DEPTH} deep", "write a loop")
+            return None
         generic = any(argument.annotation is None for argument in (*symbol.node.args.args, *symbol.node.args.kwonlyargs))
         caller = c.instance.symbol
         where = f"called from `{caller.name}`" if caller is not None else "called"
@@ -90,7 +97,9 @@ class Checker:
         self._instances[key] = scratch
         found = len(self.diagnostics.found)
         scratch.name = self._unique_name(symbol.name)
+        self._depth += 1
         self._instantiate(helper_context, symbol, resolved, chain, scratch)
+        self._depth -= 1
         if len(self.diagnostics.found) > found:
             self._failed.add(scratch)
             return None

@@ -142,7 +142,7 @@ def _wanted_type(c: Context, name: str, type_: CheckType) -> t.Type | None:
         return existing.local.type
     if isinstance(type_, WeakInt | WeakFloat):
         # A literal in one branch takes the type that the other branch gave the name.
-        types = [local.type for (known, _), local in c.instance.locals.items() if known == name]
+        types = c.instance.types_of(name)
         if len(types) == 1 and can_convert(type_, types[0]):
             return types[0]
     return None
@@ -155,16 +155,7 @@ def bind_local(c: Context, target: ast.Name, type_: t.Type) -> Local:
     if isinstance(existing, Bound) and existing.local.type == type_ and name not in c.poisoned:
         local = existing.local
     else:
-        key = (name, type_)
-        found = c.instance.locals.get(key)
-        if found is None:
-            taken = {parameter.local.name for parameter in c.instance.parameters}
-            taken.update(local.name for local in c.instance.locals.values())
-            unique, number = name, 2
-            while unique in taken:
-                unique, number = f"{name}_{number}", number + 1
-            found = c.instance.locals[key] = Local(unique, type_)
-        local = found
+        local = c.instance.local_of(name, type_)
     c.poisoned.discard(name)
     c.instance.bindings[target] = local
     c.environment.bind(name, Bound(local, c.span(target)))

@@ -60,9 +60,7 @@ def _check_struct_payload(c: Context, name: str, arguments: tuple[Argument, ...]
     if place.root is Root.VALUE:
         return c.error("OX318", payload, "the payload changes in the call, so it needs a name", "bind it to a local first")
     if reason is not None or place.root is Root.ELEMENT:
-        return c.error(
-            "OX307", payload, f"the payload changes in the call, but {reason or 'it is an element of an array'}", "use a local"
-        )
+        return c.error("OX307", payload, f"the payload changes in the call, but {reason or 'it is an element of an array'}", "use a local")
     note_write(c, place, payload)
     return ExprInfo(t.VOID, use=TraceUse(name, arguments, payload, type_), writes=True)
 

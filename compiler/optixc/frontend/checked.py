@@ -292,7 +292,8 @@ class FunctionInstance:
     result: t.Type = t.VOID
     info: dict[ast.expr, ExprInfo] = field(default_factory=dict)
     bindings: dict[ast.AST, Local] = field(default_factory=dict)
-    locals: dict[tuple[str, t.Type], Local] = field(default_factory=dict)
+    locals: dict[str, dict[t.Type, Local]] = field(default_factory=dict)
+    local_names: set[str] = field(default_factory=set)
     dead: set[ast.stmt] = field(default_factory=set)
     augmented: dict[ast.AugAssign, ast.BinOp] = field(default_factory=dict)
     requirements: list[Requirement] = field(default_factory=list)
@@ -301,7 +302,28 @@ class FunctionInstance:
     writes: bool = False
     is_complete: bool = False
     is_recursive: bool = False
-    uses_device_functions: bool = False
+
+    def local_of(self, name: str, type_: t.Type) -> Local:
+        """The local that the author's `name` means with this type; the second type of a name gets a number."""
+        by_type = self.locals.setdefault(name, {})
+        found = by_type.get(type_)
+        if found is None:
+            if not self.local_names:
+                self.local_names.update(parameter.local.name for parameter in self.parameters)
+            unique, number = name, 2
+            while unique in self.local_names:
+                unique, number = f"{name}_{number}", number + 1
+            self.local_names.add(unique)
+            found = by_type[type_] = Local(unique, type_)
+        return found
+
+    def types_of(self, name: str) -> list[t.Type]:
+        """The types that locals of this name have so far."""
+        return list(self.locals.get(name, ()))
+
+    def all_locals(self) -> list[Local]:
+        """Every local that is no parameter, in order of first binding of its name."""
+        return [local for by_type in self.locals.values() for local in by_type.values()]
 
 
 @dataclass(eq=False)

@@ -14,7 +14,7 @@ from optixc.frontend.declarations import Declarations
 from optixc.frontend.declare import Declarer, structs_of
 from optixc.frontend.live import LiveFunction, live_functions
 from optixc.frontend.lower import lower
-from optixc.frontend.parse import deep_recursion, parse_path, parse_text
+from optixc.frontend.parse import ParsedFile, deep_recursion, parse_path, parse_text, without_collection
 from optixc.frontend.source_file import Diagnostics, SourceFile
 from optixc.frontend.symbols import FunctionSymbol, ParamsSymbol, Symbol
 from optixc.ir import types as t
@@ -35,22 +35,20 @@ class FrontendResult:
 def compile_file(path: str | Path, include_dirs: Sequence[str | Path] = ()) -> FrontendResult:
     """Compile a shader file. Raises CompileError with every error of the file and of what it imports."""
     diagnostics = Diagnostics()
-    file = parse_path(Path(path), diagnostics)
-    if file is None:
-        raise CompileError(diagnostics.in_order())
-    return _compile_scope(file, diagnostics, include_dirs)
+    with without_collection():
+        return _compile_scope(parse_path(Path(path), diagnostics), diagnostics, include_dirs)
 
 
 def compile_text(text: str, path: str, include_dirs: Sequence[str | Path] = ()) -> FrontendResult:
     """Compile text as if it stood in a file; `path` is what messages show and where imports are looked up."""
     diagnostics = Diagnostics()
-    file = parse_text(text, path, Path(path).parent, diagnostics)
+    with without_collection():
+        return _compile_scope(parse_text(text, path, Path(path).parent, diagnostics), diagnostics, include_dirs)
+
+
+def _compile_scope(file: ParsedFile | None, diagnostics: Diagnostics, include_dirs: Sequence[str | Path]) -> FrontendResult:
     if file is None:
         raise CompileError(diagnostics.in_order())
-    return _compile_scope(file, diagnostics, include_dirs)
-
-
-def _compile_scope(file: Any, diagnostics: Diagnostics, include_dirs: Sequence[str | Path]) -> FrontendResult:
     declarer = Declarer(diagnostics, tuple(Path(folder) for folder in include_dirs))
     declarer.files.add(Path(file.source.path), file)
     with deep_recursion():
@@ -70,7 +68,7 @@ def compile_functions(functions: Iterable[Callable[..., Any]]) -> FrontendResult
     """Compile live functions; captured numbers become constants. Raises CompileError."""
     diagnostics = Diagnostics()
     declarer = Declarer(diagnostics, ())
-    with deep_recursion():
+    with without_collection(), deep_recursion():
         found: list[LiveFunction] = live_functions(list(functions), declarer, diagnostics)
         if diagnostics.found or not found:
             raise CompileError(diagnostics.in_order())

@@ -89,7 +89,6 @@ class Context:
 
     def require(self, what: str, allowed: frozenset[ProgramKind], node: ast.AST, code: str = "OX304") -> None:
         """Note that only some program kinds may do this."""
-        self.instance.uses_device_functions = True
         self.instance.requirements.append(Requirement(what, allowed, self.span(node), code))
 
     def note_call(self, callee: FunctionInstance, node: ast.AST, payloads: tuple[tuple[str, str], ...]) -> None:

@@ -165,9 +165,8 @@ class _Captured:
                 return EnumSymbol(value.__name__, {name: int(member) for name, member in value.__members__.items()})
         shown = type(value).__name__
         if shown in VECTOR_TYPES and type(value).__module__.startswith("optixc"):
-            return VectorSymbol(
-                VECTOR_TYPES[shown], tuple(component.item() if hasattr(component, "item") else component for component in value)
-            )
+            components: Any = value
+            return VectorSymbol(VECTOR_TYPES[shown], tuple(x.item() if hasattr(x, "item") else x for x in components))
         known = getattr(value, "__name__", "")
         if known and (getattr(value, "__module__", None) or "").startswith("optixc") and builtin_symbol(known) is not None:
             return builtin_symbol(known)

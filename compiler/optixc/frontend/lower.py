@@ -69,7 +69,7 @@ def _lower_function(instance: FunctionInstance, made: dict[str, t.Struct], needs
         kind=instance.kind,
         parameters=tuple(parameters),
         result=instance.result,
-        locals=tuple(dict.fromkeys((*instance.locals.values(), *lowering.temporaries))),
+        locals=tuple(dict.fromkeys((*instance.all_locals(), *lowering.temporaries))),
         body=tuple(block.statements),
         span=instance.source.header_span(symbol.node),
         doc=ast.get_docstring(symbol.node) or "",

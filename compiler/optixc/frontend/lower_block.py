@@ -60,7 +60,7 @@ class FunctionLowering:
 
     def __post_init__(self) -> None:
         self._names.update(parameter.local.name for parameter in self.instance.parameters)
-        self._names.update(local.name for local in self.instance.locals.values())
+        self._names.update(local.name for local in self.instance.all_locals())
 
     def within(self, body: FunctionInstance) -> FunctionLowering:
         """The same function, with the expression infos of a module constant or default."""

@@ -219,8 +219,8 @@ def _assign_value(low: FunctionLowering, target: ast.expr, value: Expr, block: B
             _store(low, place, value, target, block)
         case ast.Tuple(elts=elements) | ast.List(elts=elements):
             if isinstance(value.type, t.Vector):
-                kept = value if is_simple(value) else low.keep(value, block, low.span(target), "items")
-                items = [component(kept, index) for index in range(len(elements))]
+                kept: Expr = value if is_simple(value) else low.keep(value, block, low.span(target), "items")
+                items: list[Expr] = [component(kept, index) for index in range(len(elements))]
             else:
                 needs_name = not isinstance(value, LocalRef | Construct)
                 kept = low.keep(value, block, low.span(target), "items") if needs_name else value

@@ -7,6 +7,7 @@ beyond its or our stack, files beyond a million lines) becomes a diagnostic. It 
 from __future__ import annotations
 
 import ast
+import gc
 import io
 import sys
 import tokenize
@@ -47,6 +48,18 @@ def deep_recursion(limit: int = _STACK_FOR_US) -> Iterator[None]:
         sys.setrecursionlimit(before)
 
 
+@contextmanager
+def without_collection() -> Iterator[None]:
+    """Pause the garbage collector: its passes over all trees so far would make long files cost more than their length."""
+    was_enabled = gc.isenabled()
+    gc.disable()
+    try:
+        yield
+    finally:
+        if was_enabled:
+            gc.enable()
+
+
 def read_text(path: Path, shown: str, diagnostics: Diagnostics) -> str | None:
     """The text of a file with its encoding cookie and BOM obeyed, or None after a diagnostic."""
     empty = SourceFile(shown, "")
@@ -71,6 +84,7 @@ def read_text(path: Path, shown: str, diagnostics: Diagnostics) -> str | None:
 
 def parse_text(text: str, shown: str, directory: Path, diagnostics: Diagnostics) -> ParsedFile | None:
     """Parse a text; None after a diagnostic."""
+    text = text.removeprefix("\ufeff")
     source = SourceFile(shown, text)
     try:
         with deep_recursion(_STACK_FOR_PARSER), warnings.catch_warnings():
@@ -109,6 +123,18 @@ def _report_syntax_error(source: SourceFile, error: SyntaxError, diagnostics: Di
         diagnostics.add(source, "OX101", span, f"the file is not valid Python: {error.msg}")
 
 
+def _chain_length(node: ast.AST) -> int:
+    """How much deeper than the text a chain becomes in compiled form: `a and b and c`, `a < b < c`, the cases of a match."""
+    match node:
+        case ast.BoolOp(values=values):
+            return len(values) - 2
+        case ast.Compare(ops=ops):
+            return len(ops) - 1
+        case ast.Match(cases=cases):
+            return len(cases)
+    return 0
+
+
 def _check_depth(source: SourceFile, tree: ast.Module, diagnostics: Diagnostics) -> bool:
     """Refuse what our recursive visitors and the passes after them would not stand; walks without recursion."""
     fine = True
@@ -118,10 +144,11 @@ def _check_depth(source: SourceFile, tree: ast.Module, diagnostics: Diagnostics)
             node, depth = pending.pop()
             if depth > MAX_DEPTH:
                 anchor = node if hasattr(node, "lineno") else statement
-                message = f"this is nested more than {MAX_DEPTH} deep"
+                message = f"this is nested (or chained) more than {MAX_DEPTH} deep"
                 diagnostics.add(source, "OX103", anchor, message, "split it into several statements")
                 fine = False
                 break
+            step = 1 + _chain_length(node)
             for child in ast.iter_child_nodes(node):
-                pending.append((child, depth + 1))
+                pending.append((child, depth + step))
     return fine
