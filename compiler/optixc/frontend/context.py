@@ -35,13 +35,14 @@ class Loop:
 
 @dataclass(eq=False)
 class Hooks:
-    """Parts of the checker that others call: expressions, statements' helpers, instances of helpers, module constants."""
+    """Parts of the checker that others call: expressions, instances of helpers, module constants; and what functions bind."""
 
     expression: Callable[[Context, ast.expr], ExprInfo]
     helper: Callable[[Context, FunctionSymbol, list[t.Type | None], ast.expr], FunctionInstance | None]
     constant: Callable[[Context, ConstantSymbol], ConstantUse | None]
     host_constant: Callable[[ConstantSymbol], str]
     expression_of: Callable[[Declarations, ast.expr], FunctionInstance]
+    bound_names: dict[ast.FunctionDef, frozenset[str]] = field(default_factory=dict)
 
 
 @dataclass(eq=False)

@@ -29,7 +29,7 @@ def _function(function: FunctionInstance) -> Iterator[str]:
     )
     kind = function.kind.value if function.kind is not None else "helper"
     yield f"{kind} {function.name}({parameters}) -> {function.result}"
-    for local in function.locals.values():
+    for local in function.all_locals():
         yield f"    local {local.name}: {local.type}"
     placed = sorted(function.info.items(), key=lambda item: (item[0].lineno, item[0].col_offset, -(item[0].end_col_offset or 0)))
     for node, info in placed:

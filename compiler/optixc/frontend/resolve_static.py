@@ -3,14 +3,12 @@
 from __future__ import annotations
 
 import ast
-from functools import cache
 
 from optixc.frontend.context import Context
 from optixc.frontend.resolve_name import resolve_dotted
 from optixc.frontend.symbols import Symbol
 
 
-@cache
 def _bound_in(function: ast.FunctionDef) -> frozenset[str]:
     """Every name that the function binds anywhere: Python makes it a local everywhere in it."""
     arguments = function.args
@@ -33,7 +31,12 @@ def _bound_in(function: ast.FunctionDef) -> frozenset[str]:
 def local_names(c: Context) -> frozenset[str]:
     """The names that the current function binds."""
     symbol = c.instance.symbol
-    return _bound_in(symbol.node) if symbol is not None else frozenset()
+    if symbol is None:
+        return frozenset()
+    known = c.hooks.bound_names
+    if symbol.node not in known:
+        known[symbol.node] = _bound_in(symbol.node)
+    return known[symbol.node]
 
 
 def static_symbol(c: Context, node: ast.expr) -> Symbol | None:
