@@ -15,7 +15,7 @@ from typing import Any
 
 from optixc import passes, toolchain
 from optixc.cache import Cache, Json, digest
-from optixc.codegen import cpp_pipeline
+from optixc.codegen.emit import emit as emit_cpp
 from optixc.errors import FileIoError, InvalidOperationError, InvalidValueError, NotSupportedError, PipelineLinkError
 from optixc.frontend.compile import FrontendResult, compile_file, compile_functions
 from optixc.installation import include_folder
@@ -28,7 +28,7 @@ from optixc.version import __version__
 
 PrintAfter = Callable[[str, nodes.Pipeline], None]
 
-SPMD_LANES: tuple[int, ...] = ()
+SPMD_LANES: tuple[int, ...] = (8, 16)
 """Packet widths that the emitter knows."""
 
 
@@ -126,7 +126,7 @@ def emit(modules: Sequence[nodes.Module], names: Sequence[str], options: Compile
         raise PipelineLinkError(str(error)) from error
     pipeline = passes.run(linked, print_after=print_after)
     found = features(pipeline)
-    return Emitted(cpp_pipeline.emit(pipeline, found), pipeline, found)
+    return Emitted(emit_cpp(pipeline, found), pipeline, found)
 
 
 def pass_names() -> tuple[str, ...]:

@@ -34,7 +34,7 @@ _BASE_FLAGS = (
     "-fno-rtti",
     "-fvisibility=hidden",
 )
-_FAST_MATH_FLAGS = ("-ffp-contract=fast",)
+_FAST_MATH_FLAGS = ("-ffp-contract=fast", "-DOXRT_FAST_MATH")
 _LOG_LINES = 30
 
 
