@@ -182,10 +182,12 @@ void Geometry::copyTriangles(const OxrtBuildInput& input)
         std::copy_n(input.vertices[key], floats, target);
         if (input.preTransform) transformPoints(input.preTransform, target, view.vertexCount);
     }
-    if (input.indices)
-        std::copy_n(input.indices, indices.size(), indices.data());
-    else
-        for (std::size_t i = 0; i < indices.size(); ++i) indices[i] = static_cast<std::uint32_t>(i);
+    indicesChanged = input.indices && !std::equal(indices.data(), indices.data() + indices.size(), input.indices);
+    if (indicesChanged) std::copy_n(input.indices, indices.size(), indices.data());
+    for (std::size_t i = 0; !input.indices && i < indices.size(); ++i) {
+        indicesChanged = indicesChanged || indices[i] != i;
+        indices[i] = static_cast<std::uint32_t>(i);
+    }
 }
 
 void Geometry::copyBoxes(const OxrtBuildInput& input)
@@ -245,7 +247,7 @@ void Geometry::refit(const EmbreeLibrary& embree, RTCScene scene, unsigned geomI
     embree.rtcSetGeometryEnableFilterFunctionFromArguments(geometry, anyHitPossible());
     if (view.primitiveType == OXRT_PRIMITIVE_TRIANGLE) {
         embree.rtcUpdateGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0);
-        embree.rtcUpdateGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0);
+        if (indicesChanged) embree.rtcUpdateGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0); // makes Embree build anew
     }
     embree.rtcCommitGeometry(geometry);
 }

@@ -42,6 +42,7 @@ private:
     Array<std::uint32_t> recordOffsets;
     Array<float> vertices;
     Array<std::uint32_t> indices;
+    bool indicesChanged = false; // by the last update
 };
 
 } // namespace oxrt

@@ -338,6 +338,20 @@ TEST(updatesMoveAndKeepTheHandle)
         if (!std::isnan(z)) CHECK_EQUAL(hits[5].t, z + 1);
     }
 
+    // Other connectivity is allowed.
+    const std::vector<std::uint32_t> indices = mesh.indices;
+    mesh.indices = {1, 2, 3, 1, 1, 1};
+    const OxrtBuildInput rewired = mesh.input();
+    CHECK_SUCCESS(oxrtAccelUpdate(accel, &rewired, 1));
+    auto hits = fixture.trace(handle);
+    CHECK_EQUAL(hits[0].geometry, ~0u);
+    CHECK_EQUAL(hits[63].primitive, 0u);
+    mesh.indices = indices;
+    const OxrtBuildInput restored = mesh.input();
+    CHECK_SUCCESS(oxrtAccelUpdate(accel, &restored, 1));
+    hits = fixture.trace(handle);
+    CHECK_EQUAL(hitCount(hits), 64u);
+
     Triangles larger{{0, 0, 1, 8, 0, 1, 0, 8, 1}, {}};
     const OxrtBuildInput other = larger.input();
     CHECK_FAILS(oxrtAccelUpdate(accel, &other, 1), OXRT_ERROR_INVALID_VALUE, "keeps");
