@@ -17,6 +17,9 @@ from optixc.stdlib.camera import Pinhole
 EYE = np.array([7.0, 2.7, -6.2])
 TARGET = np.array([2.9, 1.05, 1.2])
 VERTICAL_FOV = 40.0
+LIGHT_POSITION = (26.0, 26.0, 2.0)
+LIGHT_COLOR = (0.85, 0.82, 0.75)
+AMBIENT_COLOR = (0.30, 0.33, 0.38)
 
 
 def pinhole(aspect: float) -> Pinhole:
@@ -49,9 +52,29 @@ def plastic_balls() -> shader.PlasticBalls:
     return shader.PlasticBalls(spheres=spheres, colors=colors)
 
 
-def build_scene(context: ox.DeviceContext, floor: shader.Floor, materials: list[object]) -> ox.Accel:
+def objects() -> tuple[shader.Floor, shader.MetalBall, shader.GlassShell, shader.PlasticBalls]:
+    """What stands in the scene: the data of the hit groups' records."""
+    floor = shader.Floor(
+        anchor=(-16.0, 0.0, -16.0),
+        edge_u=(0.0, 0.0, 40.0),
+        edge_v=(40.0, 0.0, 0.0),
+        light_color=(0.80, 0.76, 0.62),
+        dark_color=(0.42, 0.06, 0.05),
+        checks=32.0,
+    )
+    metal = shader.MetalBall(center=(4.0, 1.2, 1.5), radius=1.2, reflectance=(0.80, 0.79, 0.77))
+    glass = shader.GlassShell(center=(0.9, 1.05, 2.6), inner_radius=0.98, outer_radius=1.05, refractive_index=1.5, tint=(0.97, 0.99, 0.98))
+    return floor, metal, glass, plastic_balls()
+
+
+def build_scene(
+    context: ox.DeviceContext,
+    floor: shader.Floor,
+    metal: shader.MetalBall,
+    glass: shader.GlassShell,
+    plastic: shader.PlasticBalls,
+) -> ox.Accel:
     """One acceleration structure of four build inputs; each has two records, one per type of rays."""
-    metal, glass, plastic = materials
     corners = np.array([floor.anchor + a * floor.edge_u + b * floor.edge_v for a in (0.0, 1.0) for b in (0.0, 1.0)])
     boxes = [
         np.concatenate([corners.min(axis=0) - 1e-3, corners.max(axis=0) + 1e-3])[np.newaxis].astype(np.float32),
@@ -78,23 +101,13 @@ def render(width: int, height: int, samples: int, *, verbose: bool = False) -> n
     shadow = [context.program_group_create(intersection=module[i], anyhit=module[a]) for i, _, a in kinds]
     pipeline = context.pipeline_create([raygen, *misses, *radiance, *shadow], max_trace_depth=shader.MAX_DEPTH + 2)
 
-    floor = shader.Floor(
-        anchor=(-16.0, 0.0, -16.0),
-        edge_u=(0.0, 0.0, 40.0),
-        edge_v=(40.0, 0.0, 0.0),
-        light_color=(0.80, 0.76, 0.62),
-        dark_color=(0.42, 0.06, 0.05),
-        checks=32.0,
-    )
-    metal = shader.MetalBall(center=(4.0, 1.2, 1.5), radius=1.2, reflectance=(0.80, 0.79, 0.77))
-    glass = shader.GlassShell(center=(0.9, 1.05, 2.6), inner_radius=0.98, outer_radius=1.05, refractive_index=1.5, tint=(0.97, 0.99, 0.98))
-    materials = [metal, glass, plastic_balls()]
+    floor, metal, glass, plastic = objects()
     start = time.perf_counter()
-    scene = build_scene(context, floor, materials)
+    scene = build_scene(context, floor, metal, glass, plastic)
     build_seconds = time.perf_counter() - start
 
     records = []
-    for radiance_group, shadow_group, data in zip(radiance, shadow, [floor, *materials], strict=True):
+    for radiance_group, shadow_group, data in zip(radiance, shadow, [floor, metal, glass, plastic], strict=True):
         records += [radiance_group.record(data), shadow_group.record(data)]
     table = ox.ShaderBindingTable(raygen=raygen.record(), miss=[miss.record() for miss in misses], hitgroup=records)
     image = np.zeros((height, width, 4), np.float32)
@@ -106,9 +119,9 @@ def render(width: int, height: int, samples: int, *, verbose: bool = False) -> n
         camera=pinhole(width / height),
         sample=0,
         samples=samples,
-        light_position=(26.0, 26.0, 2.0),
-        light_color=(0.85, 0.82, 0.75),
-        ambient_color=(0.30, 0.33, 0.38),
+        light_position=LIGHT_POSITION,
+        light_color=LIGHT_COLOR,
+        ambient_color=AMBIENT_COLOR,
     )
     start = time.perf_counter()
     for sample in tqdm(range(samples), desc="Whitted's spheres", unit="sample", delay=2.0, disable=None, leave=False):
@@ -117,7 +130,7 @@ def render(width: int, height: int, samples: int, *, verbose: bool = False) -> n
     seconds = time.perf_counter() - start
     if verbose:
         rays = int(ray_counts.sum(dtype=np.uint64))
-        print(f"  {len(materials[2].spheres) + 3} custom primitives, {width} x {height} pixels, {samples} samples each")
+        print(f"  {len(plastic.spheres) + 3} custom primitives, {width} x {height} pixels, {samples} samples each")
         print_statistics(context, pipeline, build_seconds, rays, seconds)
     return image
 
