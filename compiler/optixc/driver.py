@@ -70,13 +70,12 @@ class Emitted:
 
 def open_file(path: Path, include_dirs: Sequence[Path], store: Cache) -> Unit:
     """The module of a shader file; the front end runs only if the cache does not know the file's text. Raises CompileError."""
-    shown = path
-    key = digest("file", _compiler_stamp(), str(path.absolute()), *map(str, include_dirs), _read(path))
+    key = _file_key(path, include_dirs)
     note = store.read_note(key)
     if note is not None:
         current = _dependencies_key(key, note["dependencies"])
         if current is not None and current == note["key"]:
-            return Unit(path.stem, note["programs"], current, lambda: _again(shown, include_dirs, key, current))
+            return Unit(path.stem, note["programs"], current, lambda: _again(path, include_dirs, current))
     result = compile_file(str(path), include_dirs=tuple(str(folder) for folder in include_dirs))
     full_key = _dependencies_key(key, result.dependencies)
     programs = describe_programs(result.module)
@@ -213,10 +212,10 @@ def _bound_literal(name: str, value: BoundValue, params: t.Struct | None) -> nod
             raise InvalidValueError(f"bound value {name!r} is a {field.type}; scalars and vectors can be bound")
 
 
-def _again(path: Path, include_dirs: Sequence[Path], key: str, expected: str) -> FrontendResult:
+def _again(path: Path, include_dirs: Sequence[Path], expected: str) -> FrontendResult:
     """The front end's result for a file that only the cache had looked at."""
     result = compile_file(str(path), include_dirs=tuple(str(folder) for folder in include_dirs))
-    if _dependencies_key(key, result.dependencies) != expected:
+    if _dependencies_key(_file_key(path, include_dirs), result.dependencies) != expected:
         raise InvalidOperationError(f"{path} or a file that it imports changed since module_create; create the module again")
     return result
 
@@ -229,6 +228,11 @@ def recipe(options: CompileOptions) -> toolchain.Build:
 def _surroundings(plan: toolchain.Build) -> tuple[str, ...]:
     """What besides program, options and compiler decides the machine code."""
     return (_compiler_stamp(), _headers_digest(plan.include), toolchain.processor() if plan.target == "native" else "")
+
+
+def _file_key(path: Path, include_dirs: Sequence[Path]) -> str:
+    """The key of a file's own text, and of where its imports are looked for."""
+    return digest("file", _compiler_stamp(), str(path.absolute()), *map(str, include_dirs), _read(path))
 
 
 def _dependencies_key(key: str, dependencies: Sequence[str]) -> str | None:

@@ -134,9 +134,8 @@ def identify(path: str, memory: Path | None = None) -> Compiler | None:
     key = f"{real}:{status.st_size}:{status.st_mtime_ns}"
     known = _remembered(memory).get(key)
     if known is None:
-        known = _ask_version(path)
-        if memory is not None:
-            _remember(memory, key, known)
+        known = _remembered(None).get(key) or _ask_version(path)
+        _remember(memory, key, known)
     kind, version = known
     return Compiler(path, real, status.st_size, status.st_mtime_ns, kind, tuple(version)) if kind else None
 
@@ -198,7 +197,7 @@ def _run(compiler: Compiler, arguments: list[str]) -> None:
         raise ToolchainError("\n".join([head, *lines]))
 
 
-def _ask_version(path: str) -> tuple[str, tuple[int, ...]]:
+def _ask_version(path: str) -> _Version:
     try:
         output = subprocess.run([path, "--version"], capture_output=True, text=True, errors="replace", check=False, timeout=60).stdout
     except (OSError, subprocess.TimeoutExpired):
@@ -210,25 +209,32 @@ def _ask_version(path: str) -> tuple[str, tuple[int, ...]]:
     return ("gcc", tuple(map(int, gcc.groups()))) if gcc else ("", ())
 
 
-_versions: dict[str, tuple[str, tuple[int, ...]]] = {}
+_Version = tuple[str, tuple[int, ...]]
+_versions: dict[Path | None, dict[str, _Version]] = {}
+"""Known compilers by folder; under None what this process has seen."""
 
 
-def _remembered(memory: Path | None) -> dict[str, tuple[str, tuple[int, ...]]]:
-    if memory is not None and not _versions:
+def _remembered(memory: Path | None) -> dict[str, _Version]:
+    known = _versions.get(memory)
+    if known is None:
+        known = _versions[memory] = {}
         try:
-            stored = json.loads((memory / "compilers.json").read_text())
-            _versions.update({key: (kind, tuple(version)) for key, (kind, version) in stored.items()})
+            stored = json.loads((memory / "compilers.json").read_text()) if memory is not None else {}
+            known.update({key: (kind, tuple(version)) for key, (kind, version) in stored.items()})
         except (OSError, ValueError, AttributeError, TypeError):
-            return _versions
-    return _versions
+            known.clear()
+    return known
 
 
-def _remember(memory: Path, key: str, known: tuple[str, tuple[int, ...]]) -> None:
-    _versions[key] = known
+def _remember(memory: Path | None, key: str, known: _Version) -> None:
+    for place in {None, memory}:
+        _remembered(place)[key] = known
+    if memory is None:
+        return
     try:
         memory.mkdir(parents=True, exist_ok=True)
-        with tempfile.NamedTemporaryFile("w", dir=memory, delete=False) as file:
-            json.dump(_versions, file)
+        with tempfile.NamedTemporaryFile("w", dir=memory, prefix="new-", delete=False) as file:
+            json.dump(_versions[memory], file)
         os.replace(file.name, memory / "compilers.json")
     except OSError:
         return
