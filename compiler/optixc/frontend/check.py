@@ -36,16 +36,17 @@ MAX_CALL_DEPTH = 100
 class Checker:
     """Checks programs and instantiates helpers on demand."""
 
-    def __init__(self, diagnostics: Diagnostics) -> None:
+    def __init__(self, diagnostics: Diagnostics, params: t.Struct | None = None) -> None:
         self.diagnostics = diagnostics
         self.helpers: list[FunctionInstance] = []
-        self._hooks = Hooks(check_expression, self._helper, self._constant, self.host_constant, self._expression_of)
+        self._hooks = Hooks(check_expression, self._helper, self._constant, self.host_constant, self._use_params, self._expression_of)
         self._instances: dict[tuple[FunctionSymbol, tuple[t.Type, ...]], FunctionInstance] = {}
         self._constants: dict[ast.expr, FunctionInstance] = {}
         self._host_constants: dict[ast.expr, str] = {}
         self._in_progress: set[ast.expr] = set()
         self._names: set[str] = set()
         self._depth = 0
+        self.params = params
         self._failed: set[FunctionInstance] = set()
 
     def check_program(self, symbol: FunctionSymbol) -> FunctionInstance:
@@ -202,6 +203,14 @@ class Checker:
     def host_constant(self, symbol: ConstantSymbol) -> str:
         """Why a module-level name is no constant of shaders."""
         return self._host_constants[symbol.node]
+
+    def _use_params(self, c: Context, struct: t.Struct, node: ast.expr) -> None:
+        """One compilation has one struct of launch parameters, also where helper files bring their own."""
+        if self.params is None:
+            self.params = struct
+        elif self.params != struct:
+            message = f"the launch parameters are {self.params} elsewhere and {struct} here"
+            c.error("OX205", node, message, "all files of a module share one struct")
 
     def _expression_of(self, scope: Declarations, node: ast.expr) -> FunctionInstance:
         """An expression at module level: a constant or a default."""

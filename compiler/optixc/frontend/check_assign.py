@@ -21,8 +21,11 @@ from optixc.ir.nodes import Local, is_reference_type
 def check_assign(c: Context, node: ast.Assign) -> None:
     """`a = value`, `a = b = value`, `a, b = value`."""
     info = c.check(node.value)
+    check_no_value_lost(c, node.value, info)
+    if len(node.targets) > 1 and isinstance(info.type, t.Struct | t.FixedArray):
+        name = ast.unparse(node.targets[-1])
+        c.error("OX308", node, f"both targets would be names of one {info.type}", f"assign ox.copy({name}) to the second")
     for target in node.targets:
-        check_no_value_lost(c, node.value, info)
         assign_target(c, target, node.value, info.type)
 
 

@@ -125,6 +125,7 @@ def symbol_value(c: Context, node: ast.expr, symbol: Symbol) -> ExprInfo:
     name = ast.unparse(node)
     match symbol:
         case ParamsSymbol(struct=struct):
+            c.hooks.params(c, struct, node)
             return ExprInfo(struct, use=ParamsUse(struct))
         case ValueSymbol(type=type_, value=value):
             return ExprInfo(type_, constant=value)

@@ -33,7 +33,7 @@ def check_intrinsic(c: Context, node: ast.Call, name: str) -> ExprInfo:
         return ExprInfo(INVALID)
     require_row(c, row, name, node)
     result = _convert_arguments(c, node, row, bound)
-    if result is None:
+    if result is None or (name == "set_payload_types" and not _check_payload_types(c, node, bound)):
         return ExprInfo(INVALID)
     arguments: list[Argument] = []
     for parameter, argument in zip(row.parameters, bound, strict=True):
@@ -46,6 +46,21 @@ def check_intrinsic(c: Context, node: ast.Call, name: str) -> ExprInfo:
     if row.effect is not Effect.PURE:
         c.instance.writes = True
     return ExprInfo(result, use=IntrinsicUse(row, tuple(arguments)), writes=writes, fresh=True)
+
+
+def _check_payload_types(c: Context, node: ast.Call, bound: list[ast.expr | None]) -> bool:
+    """set_payload_types() stands first in its program, unconditionally, with a constant (OptiX guide, section 14)."""
+    symbol = c.instance.symbol
+    body = symbol.node.body if symbol is not None and symbol.kind is not None else []
+    statements = [s for s in body if not (isinstance(s, ast.Expr) and isinstance(s.value, ast.Constant))]
+    is_first = bool(statements) and isinstance(statements[0], ast.Expr) and statements[0].value is node
+    if not is_first:
+        c.error("OX305", node, "set_payload_types() must be the first statement of its program", "it cannot be conditional")
+        return False
+    if bound[0] is not None and c.info(bound[0]).constant is None:
+        c.error("OX305", bound[0], "set_payload_types() takes a constant", "write ox.PayloadTypeID.ID_0 or the like")
+        return False
+    return True
 
 
 def require_row(c: Context, row: Intrinsic, name: str, node: ast.AST) -> None:

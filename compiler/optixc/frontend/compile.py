@@ -90,16 +90,15 @@ def _compile(
     diagnostics: Diagnostics,
     declarer: Declarer,
 ) -> FrontendResult:
-    checker = Checker(diagnostics)
+    checker = Checker(diagnostics, _params_of(scope))
     instances = [checker.check_program(symbol) for symbol in programs]
     for symbol in helpers:
         checker.check_unused_helper(symbol)
     if diagnostics.found:
         raise CompileError(diagnostics.in_order())
     dependencies = tuple(declarer.files.dependencies)
-    params = _params_of(scope)
     structs = tuple(symbol.type for symbol in structs_of(scope))
-    checked = Checked(name, source.path, structs, params, instances, _reached(instances), dependencies)
+    checked = Checked(name, source.path, structs, checker.params, instances, _reached(instances), dependencies)
     module = lower(checked)
     problems = verify(module)
     assert not problems, "\n".join(problems)

@@ -41,6 +41,7 @@ class Hooks:
     helper: Callable[[Context, FunctionSymbol, list[t.Type | None], ast.expr], FunctionInstance | None]
     constant: Callable[[Context, ConstantSymbol], ConstantUse | None]
     host_constant: Callable[[ConstantSymbol], str]
+    params: Callable[[Context, t.Struct, ast.expr], None]
     expression_of: Callable[[Declarations, ast.expr], FunctionInstance]
     bound_names: dict[ast.FunctionDef, frozenset[str]] = field(default_factory=dict)
 
@@ -130,7 +131,11 @@ class Context:
 
     def _constant_fits(self, node: ast.expr, info: ExprInfo, target: t.Scalar, what: str) -> bool:
         if is_weak(info.type) and isinstance(info.constant, int) and not fits(info.constant, target):
-            self.error("OX313", node, f"{what} is {target}, which does not hold {info.constant}", f"expected {range_of(target)}")
+            wider = next((wide for wide in (t.UINT32, t.INT64, t.UINT64) if fits(info.constant, wide)), None)
+            note = f"expected {range_of(target)}"
+            if what == "this" and wider is not None:
+                note = f"write {wider}({info.constant})"
+            self.error("OX313", node, f"{what} is {target}, which does not hold {info.constant}", note)
             return False
         return True
 

@@ -125,7 +125,7 @@ class Declarer:
     def _import_from(self, scope: Declarations, name: str, node: ast.ImportFrom, alias: ast.alias) -> Symbol:
         module = node.module or ""
         if module == "optixc" and not node.level:
-            found = builtin_symbol(alias.name)
+            found = attribute_of(OptixNamespace(), alias.name)
             if found is not None:
                 return found
         if module in _PYTHON_MODULES and not node.level:
@@ -161,7 +161,7 @@ class Declarer:
                 self.diagnostics.add(source, "OX210", expression, message, "remove it")
             else:
                 return SkippedName(node.name, "decorated by host code", source.header_span(node))
-        if kind is None and (decorator == "program" or (node.name.startswith("__") and "__" in node.name[2:] and decorator)):
+        if kind is None and decorator == "program":
             known = " ".join(kind.prefix for kind in ProgramKind)
             message = f"`{node.name}` is a program of unknown kind"
             self.diagnostics.add(source, "OX204", source.header_span(node), message, f"its name must begin with one of {known}")
