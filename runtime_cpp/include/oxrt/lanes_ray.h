@@ -306,7 +306,17 @@ template <int W> OXRT_INLINE Lanes<uint32_t, W> attributeWord(const RayLanes<W>&
         builtin = floatAsUint(packetLanes<W>(ray.packet.hit.v));
     return select(getPrimitiveType(ray) == uint32_t(OXRT_PRIMITIVE_CUSTOM), ray.attributes[index], builtin);
 }
-template <int INDEX, int W> OXRT_INLINE Lanes<uint32_t, W> getAttribute(const RayLanes<W>& ray) { return attributeWord(ray, INDEX); }
+#define OXRT_LANES_ATTRIBUTE(index) \
+    template <int W> OXRT_INLINE Lanes<uint32_t, W> getAttribute_##index(const RayLanes<W>& ray) { return attributeWord(ray, index); }
+OXRT_LANES_ATTRIBUTE(0)
+OXRT_LANES_ATTRIBUTE(1)
+OXRT_LANES_ATTRIBUTE(2)
+OXRT_LANES_ATTRIBUTE(3)
+OXRT_LANES_ATTRIBUTE(4)
+OXRT_LANES_ATTRIBUTE(5)
+OXRT_LANES_ATTRIBUTE(6)
+OXRT_LANES_ATTRIBUTE(7)
+#undef OXRT_LANES_ATTRIBUTE
 
 }  // namespace OXRT_ISA
 }  // namespace oxrt
