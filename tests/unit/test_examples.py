@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import importlib.util
+import os
 import re
 import subprocess
 import sys
@@ -13,6 +14,7 @@ import numpy as np
 import pytest
 
 import optixc as ox
+from optixc import installation
 
 EXAMPLES = Path(__file__).resolve().parents[2] / "examples"
 FOLDERS = sorted(folder.name for folder in EXAMPLES.iterdir() if re.fullmatch(r"\d\d_\w+", folder.name))
@@ -161,3 +163,24 @@ def test_statistics_are_printed(tmp_path: Path) -> None:
 def test_collision_queries_agree_with_brute_force() -> None:
     output = run("06_collision_queries", "--rays", 200, "--observers", 128, "--points", 512, "--steps", 60)
     assert "all answers agree" in output
+
+
+def test_the_triangle_from_cpp_is_the_one_from_python(tmp_path: Path) -> None:
+    cmake = Path(sys.executable).with_name("cmake")
+    if not cmake.exists():
+        pytest.skip("cmake is not installed beside this Python")
+    folder = EXAMPLES / "07_triangle_cpp"
+    for arguments in (
+        ["-S", folder, "-B", tmp_path / "build", f"-Doptixc_DIR={installation.cmake_folder()}"],
+        ["--build", tmp_path / "build"],
+    ):
+        done = subprocess.run([cmake, *map(str, arguments)], capture_output=True, text=True, check=False)
+        assert done.returncode == 0, done.stdout + done.stderr
+    environment = {name: value for name, value in os.environ.items() if not name.startswith("PYTHON")}
+    subprocess.run([tmp_path / "build" / "triangle", tmp_path / "a.ppm"], check=True, capture_output=True, env=environment)
+    run("02_triangle", "--size", 512, "--output", tmp_path / "a.png")
+    header = b"P6\n512 512\n255\n"
+    content = (tmp_path / "a.ppm").read_bytes()
+    assert content.startswith(header)
+    picture = np.frombuffer(content[len(header) :], np.uint8).reshape(512, 512, 3)
+    assert np.abs(picture.astype(int) - ox.read_image(tmp_path / "a.png")[:, :, :3]).max() <= 1
