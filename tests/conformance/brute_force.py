@@ -61,8 +61,9 @@ class Hit:
 
 @dataclass(frozen=True)
 class Box:
-    """A custom primitive whose box the ray meets inside its interval."""
+    """A custom primitive whose box the ray meets inside its interval, and where it enters it."""
 
+    enter: float
     primitive: int
     gas_index: int
     geometry_flags: int
@@ -307,7 +308,7 @@ def _boxes(item: dict[str, Any], path: Path, ray: _Ray) -> list[Box]:
         enter = np.nanmax(np.minimum(near, far), axis=1)
         leave = np.nanmin(np.maximum(near, far), axis=1)
     met = (enter <= leave) & (leave >= ray.tmin) & (enter <= ray.tmax) & np.all(boxes[:, :3] <= boxes[:, 3:], axis=1)
-    return [Box(_primitive(item, i), _record(item, i), _flags(item, i), path) for i in np.flatnonzero(met)]
+    return [Box(float(enter[i]), _primitive(item, i), _record(item, i), _flags(item, i), path) for i in np.flatnonzero(met)]
 
 
 def _primitive(item: dict[str, Any], index: int) -> int:

@@ -13,7 +13,7 @@ from itertools import pairwise
 from typing import Any
 
 import brute_force
-from oracle_compare import close, mismatches, ray_scale, same_sequence
+from oracle_compare import close, decide, mismatches, ray_scale, same_sequence
 from oracle_events import RayResult
 from oracle_files import Probe, number, numbers
 
@@ -53,6 +53,8 @@ COUNTING_MODES = (2, 4, 5, 6)
 # Two computed distances of one crossing differ by rounding only; hits this near to each other count as one place.
 SAME_PLACE = 1e-6
 # Directions whose squared length is a normal number of binary32.
+# A number of calls that no counting any-hit program of the records waits for.
+UNCOUNTED = 0xffff
 SHORTEST, LONGEST = 1e-18, 1e18
 # What depends on the order in which candidates were seen.
 ORDER_KEYS = frozenset({"p", "p1", "tmaxBefore", "tmaxAfter"})
@@ -137,7 +139,8 @@ def _explain(probe: Probe, given: dict[str, Any], ours: list[dict[str, Any]], th
     if _order_decides(probe, given, ours + theirs):
         names |= _drop(left_ours, left_theirs, FIRST_ACCEPTED, lambda event: _candidate(probe, given, event, known))
     ends = [end for events in (ours, theirs) if (end := _end(probe, events)) is not None]
-    names |= _drop(left_ours, left_theirs, BEYOND, lambda event: _beyond(event, ends) and _candidate(probe, given, event, known))
+    names |= _drop(left_ours, left_theirs, BEYOND, lambda event: (_beyond(event, ends) and _candidate(probe, given, event, known))
+                   or _box_beyond(probe, given, event, ends))
     if _coincident(probe, given, ours + theirs):
         names |= _drop(left_ours, left_theirs, COINCIDENT, lambda event: _candidate(probe, given, event, known))
     if left_ours or left_theirs:
@@ -203,8 +206,15 @@ def _end(probe: Probe, events: list[dict[str, Any]]) -> float | None:
     records = {hit["data"]["id"]: hit["data"] for hit in probe.hitgroups}
     found = [number(event["tmax"]) for event in events if event["ev"] == "CH"]
     found = found or [number(event["t"]) for event in events if event["ev"] == "RP" and event["ret"]]
-    found = found or [number(event["tmax"]) for event in events if event["ev"] == "AH" and records[event["rec"]]["ahMode"] == 0]
+    found = found or [number(event["tmax"]) for event in events if event["ev"] == "AH" and
+                      decide(records[event["rec"]], UNCOUNTED, event["prim"], event["hitKind"]) != "ignore"]
     return min(found) if found else None
+
+
+def _box_beyond(probe: Probe, given: dict[str, Any], event: dict[str, Any], ends: list[float]) -> bool:
+    """Whether a custom primitive's box begins where the kept hit is or behind it; what it reports may lie before."""
+    return event["ev"] != "MS" and bool(ends) and any(
+        box.primitive == event["prim"] and box.enter >= max(ends) for box in brute_force.scene_boxes(probe.scene, given))
 
 
 def _beyond(event: dict[str, Any], ends: list[float]) -> bool:
@@ -214,12 +224,15 @@ def _beyond(event: dict[str, Any], ends: list[float]) -> bool:
     return event["ev"] == "AH" and bool(ends) and number(event["tmax"]) > max(ends)
 
 
+def close_to(t: float) -> float:
+    """The distance, rounded so that computed twice it is the same."""
+    return round(t, 4)
+
+
 def _coincident(probe: Probe, given: dict[str, Any], events: list[dict[str, Any]]) -> bool:
     """Whether the ray has two different candidates at one distance."""
-    places = Counter()
-    for event in {(event["ev"], event["rec"], event["prim"], event.get("instIdx")): event for event in events
-                  if event["ev"] in ("AH", "CH")}.values():
-        places[round(number(event["tmax"]), 4)] += 1
+    hits = {(event["rec"], event["prim"], close_to(number(event["tmax"]))) for event in events if event["ev"] in ("AH", "CH")}
+    places = Counter(place for _, _, place in hits)
     distances = sorted(hit.t for hit in brute_force.scene_candidates(probe.scene, given))
     return any(count > 1 for count in places.values()) or any(
         math.isfinite(b) and close(a, b, SAME_PLACE) for a, b in pairwise(distances))

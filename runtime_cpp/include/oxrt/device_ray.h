@@ -191,7 +191,7 @@ OXRT_INLINE uint32_t getHitKind(const Ray& ray) {
 OXRT_INLINE bool isTriangleHit(const Ray& ray) { return getHitKind(ray) >= HIT_KIND_TRIANGLE_FRONT_FACE; }
 OXRT_INLINE bool isTriangleFrontFaceHit(const Ray& ray) { return getHitKind(ray) == HIT_KIND_TRIANGLE_FRONT_FACE; }
 OXRT_INLINE bool isTriangleBackFaceHit(const Ray& ray) { return getHitKind(ray) == HIT_KIND_TRIANGLE_BACK_FACE; }
-OXRT_INLINE constexpr bool isBackFaceHit(uint32_t kind) { return kind >= 128 && (kind & 1) != 0; }
+OXRT_INLINE constexpr bool isBackFaceHit(uint32_t kind) { return (kind & 1) != 0; } /* of custom kinds too, as recorded */
 OXRT_INLINE constexpr bool isFrontFaceHit(uint32_t kind) { return !isBackFaceHit(kind); }
 OXRT_INLINE bool isBackFaceHit(const Ray& ray) { return isBackFaceHit(getHitKind(ray)); }
 OXRT_INLINE bool isFrontFaceHit(const Ray& ray) { return isFrontFaceHit(getHitKind(ray)); }
@@ -203,9 +203,12 @@ OXRT_INLINE constexpr uint32_t getPrimitiveType(uint32_t kind) {
     for (uint32_t type = OXRT_PRIMITIVE_QUADRATIC_BSPLINE; type <= OXRT_PRIMITIVE_CUBIC_BEZIER; ++type)
         if (builtinHitKind(type) == (kind & ~1u))
             return type;
-    return 0;
+    return OXRT_PRIMITIVE_CUSTOM;
 }
-OXRT_INLINE uint32_t getPrimitiveType(const Ray& ray) { return ray.geometry->primitiveType; }
+/* Custom primitives may report the kinds of built-in ones and then look like them, but never like triangles. */
+OXRT_INLINE uint32_t getPrimitiveType(const Ray& ray) {
+    return isCustomGeometry(ray) && ray.kind < HIT_KIND_TRIANGLE_FRONT_FACE ? getPrimitiveType(ray.kind) : ray.geometry->primitiveType;
+}
 
 OXRT_INLINE float2 getTriangleBarycentrics(const Ray& ray) { return {ray.u, ray.v}; }
 OXRT_INLINE float getCurveParameter(const Ray& ray) { return ray.u; }
