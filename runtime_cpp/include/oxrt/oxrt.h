@@ -64,7 +64,7 @@ typedef struct OxrtContextOptions {
     unsigned logCallbackLevel;   /* 0 to 4 */
     unsigned validation;         /* 0 or 1 */
     unsigned threads;            /* bounds launches and builds; 0: as many as the process may use */
-    const char* embreePath;      /* libembree4 to load; NULL: OXRT_EMBREE, else the system's. One that the process has loaded already wins */
+    const char* embreePath;      /* libembree4 to load; NULL: OXRT_EMBREE, else the system's. One that is loaded already wins */
 } OxrtContextOptions;
 
 OXRT_API OxrtResult oxrtContextCreate(const OxrtContextOptions* options, OxrtContext* context);
@@ -226,7 +226,8 @@ typedef struct OxrtLaunchReport {
     char message[512];
 } OxrtLaunchReport;
 
-/* Runs width x height x depth launch indices, on the calling thread too, and returns when all are done. `params` is copied (paramsSize bytes). */
+/* Runs width x height x depth launch indices, on the calling thread too, and returns when all are done. `params` is copied and must have
+   the pipeline's paramsSize bytes. */
 OXRT_API OxrtResult oxrtLaunch(OxrtPipeline pipeline, const void* params, size_t paramsSize, const OxrtShaderBindingTable* sbt,
                                uint32_t width, uint32_t height, uint32_t depth);
 /* The same in steps, for a caller that must stay responsive: begin, then wait until *done is 1. A begun launch must be waited for. */

@@ -50,7 +50,7 @@ typedef struct OxrtGeometry {
     uint32_t keyCount;             /* motion keys, 1 if static */
     const uint32_t* recordFlags;   /* recordCount geometry flag words */
     const uint32_t* recordOffsets; /* one per primitive, clamped to recordCount - 1; NULL: all 0 */
-    const float* vertices;         /* triangles: xyz, 3 floats apart; spheres and curves: xyzr, 4 floats apart; custom: boxes, 6 floats apart */
+    const float* vertices;         /* floats apart: 3 triangles (xyz), 4 spheres and curves (xyzr), 6 custom primitives (boxes) */
     uint64_t vertexCount;          /* vertices (or boxes) per key; key k begins vertexCount * k further */
     const uint32_t* indices;       /* triangles: 3 per primitive, never NULL; curves: first control point; else NULL */
     const void* opacityMicromap;   /* NULL without */
@@ -122,7 +122,8 @@ enum { OXRT_FAULT_NONE = 0, OXRT_FAULT_STACK_OVERFLOW = -1, OXRT_FAULT_TRACE_DEP
 
 typedef struct OxrtThread OxrtThread;
 
-enum { OXRT_PRINT_STRING = 0, OXRT_PRINT_BOOL = 1, OXRT_PRINT_INT = 2, OXRT_PRINT_UINT = 3, OXRT_PRINT_FLOAT32 = 4, OXRT_PRINT_FLOAT64 = 5 };
+enum { OXRT_PRINT_STRING = 0, OXRT_PRINT_BOOL = 1, OXRT_PRINT_INT = 2, OXRT_PRINT_UINT = 3, OXRT_PRINT_FLOAT32 = 4,
+       OXRT_PRINT_FLOAT64 = 5 };
 
 /* One item of a print: `count` values of one type, in parentheses if more than one. Pointers live as long as the call. */
 typedef struct OxrtPrintItem {
