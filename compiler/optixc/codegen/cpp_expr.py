@@ -274,12 +274,20 @@ class Expressions:
                 return Code(f"{name}({', '.join(arguments)})")
 
     def _members(self, struct: Struct, node: Construct, arguments: list[str]) -> list[str]:
-        """Initialisers of a struct's fields; storage scalars are narrowed as an assignment would."""
+        """Initialisers of a struct's fields; storage types are narrowed as an assignment would."""
         members = []
         for field, argument, text in zip(struct.fields, node.arguments, arguments, strict=False):
-            is_narrowed = isinstance(field.type, Scalar) and field.type != argument.type
-            members.append(f"{self._dialect.type_name(field.type, argument)}({text})" if is_narrowed else text)
+            if isinstance(field.type, Scalar) and field.type != argument.type:
+                members.append(f"{self._dialect.type_name(field.type, argument)}({text})")
+            else:
+                members.append(self.stored(text, argument, field.type))
         return members
+
+    def stored(self, text: str, value: Expr, target: Type) -> str:
+        """The text of a value as it is written to a place of type `target`: vectors of storage scalars are converted."""
+        if isinstance(target, Vector) and isinstance(value.type, Vector) and target != value.type:
+            return f"oxrt::convert<{self._dialect_scalar(target.element)}>({text})"
+        return text
 
 
 def within(code: Code, precedence: int) -> str:

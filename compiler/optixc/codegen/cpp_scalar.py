@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import assert_never
 
-from optixc.codegen.cpp_expr import PRIMARY, UNARY, Expressions
+from optixc.codegen.cpp_expr import AND, UNARY, Expressions
 from optixc.codegen.cpp_scalar_calls import ScalarCalls
 from optixc.codegen.cpp_scalar_dialect import ScalarDialect
 from optixc.codegen.cpp_signatures import Signatures
@@ -21,12 +21,10 @@ from optixc.ir.nodes import (
     CallHelper,
     CallIntrinsic,
     Continue,
-    ElementRef,
     Expr,
     ForRange,
     Function,
     If,
-    IndexRef,
     Literal,
     Local,
     LocalRef,
@@ -38,7 +36,7 @@ from optixc.ir.nodes import (
     UnaryOp,
     While,
 )
-from optixc.ir.types import FixedArray, Void
+from optixc.ir.types import Void
 from optixc.ir.walk import Body
 from optixc.source import Span
 
@@ -121,37 +119,18 @@ class ScalarFunction:
                 assert_never(statement)
 
     def _assign(self, statement: Assign) -> None:
-        value = self._expressions.text(statement.value)
+        value = self._expressions.stored(self._expressions.text(statement.value), statement.value, statement.target.type)
         if isinstance(statement.target, LocalRef):
             self._writer.line(f"{self._target(statement, statement.target.local)} = {value};", statement.span)
             return
         text = f"{self._expressions.place(statement.target)} = {value};"
-        guard = self._guard(statement.target)
+        guard = self._calls.guard(statement.target)
         if guard is None:
             self._writer.line(text, statement.span)
             return
         self._writer.line(f"if ({guard})", statement.span)
         with self._writer.indented():
             self._writer.line(text, statement.span)
-
-    def _guard(self, place: Expr) -> str | None:
-        """The condition under which a place exists, in checked builds; None where it always does."""
-        if not self._options.is_checked:
-            return None
-        conditions = []
-        node = place
-        while not isinstance(node, LocalRef):
-            if isinstance(node, ElementRef):
-                indices = ", ".join(self._expressions.text(index) for index in node.indices)
-                conditions.append(f"oxrt::checked({self._names.thread}).contains({self._expressions.text(node.array)}, {indices})")
-                break
-            if isinstance(node, IndexRef) and isinstance(node.base.type, FixedArray) and not isinstance(node.index, Literal):
-                conditions.append(f"{self._expressions.place(node.base)}.contains({self._expressions.text(node.index)})")
-            base = getattr(node, "base", None)
-            if base is None:
-                break
-            node = base
-        return " && ".join(reversed(conditions)) or None
 
     def _target(self, statement: Stmt, local: Local) -> str:
         """The left side of an assignment to a local: its declaration if it is declared here."""
@@ -183,18 +162,19 @@ class ScalarFunction:
         self._writer.line("}")
 
     def _while(self, statement: While) -> None:
-        condition = self._expressions.text(statement.condition)
-        is_simple = not statement.condition_body
-        with self._writer.block(f"while ({condition})" if is_simple else "for (;;)", statement.span):
-            if not statement.bounded:
-                self._writer.line(f"if (oxrt::isCancelled({self._names.thread}))", statement.span)
-                with self._writer.indented():
-                    self._writer.line("break;")
-            if not is_simple:
+        """Loops that may never end look whether the launch is to stop."""
+        polls = [] if statement.bounded else [f"!oxrt::isCancelled({self._names.thread})"]
+        if statement.condition_body:
+            with self._writer.block(f"while ({' '.join(polls) or 'true'})", statement.span):
                 self._body(statement.condition_body)
                 self._writer.line(f"if (!{self._expressions.at(statement.condition, UNARY)})", statement.span)
                 with self._writer.indented():
                     self._writer.line("break;")
+                self._body(statement.body)
+            return
+        is_endless = isinstance(statement.condition, Literal) and statement.condition.value is True
+        conditions = [self._expressions.at(statement.condition, AND + 1 if polls else 0)] if not (is_endless and polls) else []
+        with self._writer.block(f"while ({' && '.join(conditions + polls)})", statement.span):
             self._body(statement.body)
 
     def _for(self, statement: ForRange) -> None:
@@ -203,11 +183,10 @@ class ScalarFunction:
         start, stop, step = (self._expressions.text(bound) for bound in (statement.start, statement.stop, statement.step))
         is_declared = id(statement) in self._declarations.at_statement
         if is_declared and self._counts_plainly(statement):
-            is_unread = self._unread(statement.target)
-            head = f"for ({is_unread}{type_} {target} = {start}; {target} < {self._expressions.at(statement.stop, PRIMARY)}; ++{target})"
+            head = f"for ({type_} {target} = {start}; {target} < {stop}; ++{target})"
+        elif is_declared:
+            head = f"for ({self._unread(statement.target)}{type_} {target} : oxrt::Range<{type_}>({start}, {stop}, {step}))"
         else:
-            if is_declared:
-                self._writer.line(f"{self._unread(statement.target)}{type_} {target};", statement.span)
             range_name = self._calls.fresh("range")
             head = f"for (oxrt::Range<{type_}> {range_name}({start}, {stop}, {step}); {range_name}.next({target});)"
         with self._writer.block(head, statement.span):

@@ -8,7 +8,7 @@ from optixc.codegen.cpp_types import TypeNames
 from optixc.codegen.names import Scope, string_literal
 from optixc.codegen.needs import REPORT, THROW, Options
 from optixc.codegen.program_classes import known_flags
-from optixc.ir.intrinsic_rows import INTRINSICS
+from optixc.ir.intrinsic_rows import ATOMIC_NAMES, INTRINSICS
 from optixc.ir.intrinsics import Effect, State
 from optixc.ir.nodes import (
     CallCallable,
@@ -19,12 +19,13 @@ from optixc.ir.nodes import (
     FieldRef,
     Function,
     IndexRef,
+    Literal,
     LocalRef,
     ParamsRef,
     Trace,
     is_reference_type,
 )
-from optixc.ir.types import Struct
+from optixc.ir.types import FixedArray, Struct
 from optixc.ir.walk import expressions
 
 _FLAGS_ARGUMENT = 7
@@ -70,6 +71,25 @@ class ScalarCalls:
             case CallCallable() | Trace():
                 return self._is_pending() if self._options.traces_throw else None
 
+    def guard(self, place: Expr) -> str | None:
+        """The condition under which a place exists, in checked builds; None where it always does."""
+        if not self._options.is_checked:
+            return None
+        conditions = []
+        node = place
+        while not isinstance(node, LocalRef):
+            if isinstance(node, ElementRef):
+                indices = ", ".join(self._expressions.text(index) for index in node.indices)
+                conditions.append(f"oxrt::checked({self._names.thread}).contains({self._expressions.text(node.array)}, {indices})")
+                break
+            if isinstance(node, IndexRef) and isinstance(node.base.type, FixedArray) and not isinstance(node.index, Literal):
+                conditions.append(f"{self._expressions.place(node.base)}.contains({self._expressions.text(node.index)})")
+            base = getattr(node, "base", None)
+            if base is None:
+                break
+            node = base
+        return " && ".join(reversed(conditions)) or None
+
     def _has_ended(self) -> str:
         return f"oxrt::hasEnded({self._names.trace})"
 
@@ -91,6 +111,8 @@ class ScalarCalls:
             return self._report(statement, arguments)
         if statement.name == THROW:
             return self._throw(statement, arguments)
+        if statement.name in ATOMIC_NAMES:
+            return self._atomic(statement, arguments)
         hidden = {
             State.NONE: [],
             State.THREAD: [self._names.thread],
@@ -98,6 +120,13 @@ class ScalarCalls:
             State.HIT_OBJECT: [self._names.hit_object],
         }[row.state]
         return f"{row.cpp}({', '.join([*hidden, *arguments])})"
+
+    def _atomic(self, statement: CallIntrinsic, arguments: list[str]) -> str:
+        """The first argument is the element's place; where it is checked and does not exist, the result is zero."""
+        place = statement.arguments[0]
+        call = f"{INTRINSICS[statement.name].cpp}({', '.join([self._expressions.place(place), *arguments[1:]])})"
+        guard = self.guard(place)
+        return call if guard is None else f"{guard} ? {call} : {self._types.name(place.type)}()"
 
     def _report(self, statement: CallIntrinsic, arguments: list[str]) -> str:
         offered = statement.arguments[2:]

@@ -41,10 +41,10 @@ def declarations(function: Function) -> Declarations:
             continue
         if local.name not in read:
             result.unread.add(local.name)
-        statement = _declaring_statement(function.body, local.name)
-        if statement is None:
+        declaring = _declaring_statements(function.body, local.name)
+        if not declaring:
             result.at_top.append(local)
-        else:
+        for statement in declaring:
             result.at_statement[id(statement)] = local
     return result
 
@@ -100,25 +100,34 @@ def _is_mentioned(body: Body, name: str) -> bool:
     return any(_mentions(statement, name) for statement in body)
 
 
-def _declaring_statement(body: Body, name: str) -> Stmt | None:
-    """The statement that can declare the local: the first mention in the innermost block that holds all of them."""
+def _declaring_statements(body: Body, name: str) -> list[Stmt]:
+    """The statements that can declare the local: the first mention in the innermost block that holds all of them, or every loop that
+    counts with it if nothing else mentions it there."""
     mentioning = [statement for statement in body if _mentions(statement, name)]
+    if all(_counts_alone(statement, name) for statement in mentioning):
+        return mentioning
     first = mentioning[0]
     target = assigned_local(first)
     if target is not None and target.name == name and not isinstance(first, ForRange):
-        return None if name in reads(first) else first
+        return [] if name in reads(first) else [first]
     if len(mentioning) > 1:
-        return None
-    if isinstance(first, ForRange) and target is not None and target.name == name:
-        bounds = (first.start, first.stop, first.step)
-        return None if is_changed(first.body, name) or any(_mentions_in(bound, name) for bound in bounds) else first
-    inner = _inner_blocks(first)
-    if _mentions_itself(first, name) and not (isinstance(first, While) and first.condition_body):
-        return None
-    holders = [block for block in inner if _is_mentioned(block, name)]
-    if len(holders) != 1 or (isinstance(first, While) and _mentions_itself(first, name) and not _is_mentioned(first.condition_body, name)):
-        return None
-    return _declaring_statement(holders[0], name)
+        return []
+    holders = [block for block in _inner_blocks(first) if _is_mentioned(block, name)]
+    if len(holders) != 1 or (_mentions_itself(first, name) and not _is_inside_loop(first, name)):
+        return []
+    return _declaring_statements(holders[0], name)
+
+
+def _counts_alone(statement: Stmt, name: str) -> bool:
+    """Whether the statement is a loop that counts with this local, which nothing else of it changes."""
+    if not isinstance(statement, ForRange) or statement.target.name != name or is_changed(statement.body, name):
+        return False
+    return not any(_mentions_in(bound, name) for bound in (statement.start, statement.stop, statement.step))
+
+
+def _is_inside_loop(statement: Stmt, name: str) -> bool:
+    """Whether a loop's condition mentions a local only behind what is hoisted from it, which stands in the loop's own block."""
+    return isinstance(statement, While) and _is_mentioned(statement.condition_body, name)
 
 
 def _mentions_in(expression: Expr, name: str) -> bool:

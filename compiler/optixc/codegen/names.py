@@ -8,26 +8,24 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-_KEYWORDS = frozenset(
-    (
-        "alignas alignof and and_eq asm auto bitand bitor bool break case catch char char8_t char16_t char32_t class compl concept const "
-        "consteval constexpr constinit const_cast continue co_await co_return co_yield decltype default delete do double dynamic_cast "
-        "else enum explicit export extern false float for friend goto if inline int long mutable namespace new noexcept not not_eq "
-        "nullptr operator or or_eq private protected public register reinterpret_cast requires return short signed sizeof static "
-        "static_assert static_cast struct switch template this thread_local throw true try typedef typeid typename union unsigned using "
-        "virtual void volatile wchar_t while xor xor_eq restrict"
-    ).split(" ")
+_KEYWORDS = (
+    "alignas alignof and and_eq asm auto bitand bitor bool break case catch char char8_t char16_t char32_t class compl concept const "
+    "consteval constexpr constinit const_cast continue co_await co_return co_yield decltype default delete do double dynamic_cast "
+    "else enum explicit export extern false float for friend goto if inline int long mutable namespace new noexcept not not_eq "
+    "nullptr operator or or_eq private protected public register reinterpret_cast requires return short signed sizeof static "
+    "static_assert static_cast struct switch template this thread_local throw true try typedef typeid typename union unsigned using "
+    "virtual void volatile wchar_t while xor xor_eq restrict"
 )
 
-_NOT_OURS = frozenset(
-    (
-        "oxrt half number main linux unix i386 assert NULL NAN INFINITY errno offsetof int8_t int16_t int32_t int64_t uint8_t uint16_t "
-        "uint32_t uint64_t size_t ptrdiff_t intptr_t uintptr_t INT8_MIN INT16_MIN INT32_MIN INT64_MIN INT8_MAX INT16_MAX INT32_MAX "
-        "INT64_MAX UINT8_MAX UINT16_MAX UINT32_MAX UINT64_MAX INT8_C INT16_C INT32_C INT64_C UINT8_C UINT16_C UINT32_C UINT64_C "
-        "oxrt_pipeline_v1"
-    ).split(" ")
+_NOT_OURS = (
+    "oxrt half number main linux unix i386 assert NULL NAN INFINITY errno offsetof int8_t int16_t int32_t int64_t uint8_t uint16_t "
+    "uint32_t uint64_t size_t ptrdiff_t intptr_t uintptr_t INT8_MIN INT16_MIN INT32_MIN INT64_MIN INT8_MAX INT16_MAX INT32_MAX "
+    "INT64_MAX UINT8_MAX UINT16_MAX UINT32_MAX UINT64_MAX INT8_C INT16_C INT32_C INT64_C UINT8_C UINT16_C UINT32_C UINT64_C "
+    "oxrt_pipeline_v1"
 )
 """Macros of the headers and compilers, and names that generated code uses unqualified."""
+
+_RESERVED = frozenset([*_KEYWORDS.split(), *_NOT_OURS.split()])
 
 
 def identifier(name: str) -> str:
@@ -35,10 +33,10 @@ def identifier(name: str) -> str:
     text = "".join(c if c.isascii() else f"u{ord(c):x}" for c in name)
     while "__" in text:
         text = text.replace("__", "_")
-    text = text.lstrip("_") or "unnamed"
+    text = text.lstrip("_") or "unused"
     if text[0].isdigit():
         text = "n" + text
-    is_taken = text in _KEYWORDS or text in _NOT_OURS or text.startswith(("OXRT_", "Oxrt", "RTC"))
+    is_taken = text in _RESERVED or text.startswith(("OXRT_", "Oxrt", "RTC"))
     return text + "_" if is_taken else text
 
 

@@ -26,32 +26,28 @@ template <class T> OXRT_INLINE T fetchAdd(T* place, T value) {
         return __atomic_fetch_add(place, value, __ATOMIC_RELAXED);
 }
 
-/* The functions of shaders: on element `index`; outside of the array they do nothing and give zero. */
-#define OXRT_ATOMIC(NAME, ...)                                                                                        \
-    template <class T, int RANK> OXRT_INLINE T NAME(const Array<T, RANK>& array, uint32_t index, T value) {            \
-        T* place = elementOf(array, index);                                                                            \
-        return place ? __VA_ARGS__ : T(0);                                                                             \
-    }
-template <class T, int RANK> OXRT_INLINE T* elementOf(const Array<T, RANK>& array, uint32_t index) {
-    uint64_t count = 1;
-    for (int axis = 0; axis < RANK; ++axis)
-        count *= array.shape[axis];
-    return index < count ? array.data + index : nullptr;
+template <class T> OXRT_INLINE T atomicAdd(T& place, T value) { return fetchAdd(&place, value); }
+template <class T> OXRT_INLINE T atomicSub(T& place, T value) { return fetchAdd(&place, T(-value)); }
+template <class T> OXRT_INLINE T atomicExch(T& place, T value) {
+    return atomicUpdate(&place, [value](T) { return value; });
 }
-OXRT_ATOMIC(atomicAdd, fetchAdd(place, value))
-OXRT_ATOMIC(atomicSub, fetchAdd(place, T(-value)))
-OXRT_ATOMIC(atomicExch, atomicUpdate(place, [value](T) { return value; }))
-OXRT_ATOMIC(atomicMin, atomicUpdate(place, [value](T old) { return value < old ? value : old; }))
-OXRT_ATOMIC(atomicMax, atomicUpdate(place, [value](T old) { return old < value ? value : old; }))
-OXRT_ATOMIC(atomicAnd, __atomic_fetch_and(place, value, __ATOMIC_RELAXED))
-OXRT_ATOMIC(atomicOr, __atomic_fetch_or(place, value, __ATOMIC_RELAXED))
-OXRT_ATOMIC(atomicXor, __atomic_fetch_xor(place, value, __ATOMIC_RELAXED))
-OXRT_ATOMIC(atomicInc, atomicUpdate(place, [value](T old) { return old >= value ? T(0) : T(old + 1); }))
-OXRT_ATOMIC(atomicDec, atomicUpdate(place, [value](T old) { return old == T(0) || old > value ? value : T(old - 1); }))
-#undef OXRT_ATOMIC
-template <class T, int RANK> OXRT_INLINE T atomicCas(const Array<T, RANK>& array, uint32_t index, T expected, T value) {
-    T* place = elementOf(array, index);
-    return place ? atomicUpdate(place, [expected, value](T old) { return old == expected ? value : old; }) : T(0);
+template <class T> OXRT_INLINE T atomicMin(T& place, T value) {
+    return atomicUpdate(&place, [value](T old) { return value < old ? value : old; });
+}
+template <class T> OXRT_INLINE T atomicMax(T& place, T value) {
+    return atomicUpdate(&place, [value](T old) { return old < value ? value : old; });
+}
+template <class T> OXRT_INLINE T atomicAnd(T& place, T value) { return __atomic_fetch_and(&place, value, __ATOMIC_RELAXED); }
+template <class T> OXRT_INLINE T atomicOr(T& place, T value) { return __atomic_fetch_or(&place, value, __ATOMIC_RELAXED); }
+template <class T> OXRT_INLINE T atomicXor(T& place, T value) { return __atomic_fetch_xor(&place, value, __ATOMIC_RELAXED); }
+template <class T> OXRT_INLINE T atomicInc(T& place, T value) {
+    return atomicUpdate(&place, [value](T old) { return old >= value ? T(0) : T(old + 1); });
+}
+template <class T> OXRT_INLINE T atomicDec(T& place, T value) {
+    return atomicUpdate(&place, [value](T old) { return old == T(0) || old > value ? value : T(old - 1); });
+}
+template <class T> OXRT_INLINE T atomicCas(T& place, T expected, T value) {
+    return atomicUpdate(&place, [expected, value](T old) { return old == expected ? value : old; });
 }
 
 }  // namespace OXRT_ISA

@@ -142,11 +142,22 @@ template <class T> struct Range {
     OXRT_INLINE constexpr bool next(T& target) {
         if (turns == 0)
             return false;
-        --turns;
         target = value;
-        value = T(value + step);
+        ++*this;
         return true;
     }
+
+    /* For loops over the range itself: it is its own iterator, at its end when no turns are left. */
+    struct End {};
+    OXRT_INLINE constexpr Range begin() const { return *this; }
+    OXRT_INLINE constexpr End end() const { return {}; }
+    OXRT_INLINE constexpr T operator*() const { return value; }
+    OXRT_INLINE constexpr Range& operator++() {
+        --turns;
+        value = T(value + step);
+        return *this;
+    }
+    OXRT_INLINE constexpr bool operator!=(End) const { return turns != 0; }
 };
 
 }  // namespace OXRT_ISA

@@ -1,0 +1,109 @@
+/* Made by optixc. Compiled features:
+   closesthit programs: shader.py:52
+   print: shader.py:46
+   assertions: shader.py:45
+   array bounds checks: shader.py:43
+   validation: asked for by the pipeline's options
+*/
+#include <oxrt/device.h>
+
+namespace {
+
+struct Params {
+    oxrt::Array<oxrt::float3, 2> values;
+    uint64_t scene;
+};
+
+struct State {
+    oxrt::FixedArray<float, 4> weights;
+};
+
+struct Radiance {
+    oxrt::float3 color;
+};
+
+/* Program numbers, as SBT records hold them. */
+namespace number {
+enum : int32_t { raygen_checked, closesthit_white };
+}
+
+/* What a trace with a Radiance payload can run. */
+struct RadiancePrograms : oxrt::NoPrograms {
+    using Payload = Radiance;
+    static constexpr bool hasClosestHit = true;
+    static constexpr bool isValidated = true;
+    static void closestHit(oxrt::Ray& trace, Payload& payload, const OxrtRecordHeader& record);
+};
+
+#line 29 "shader.py"
+float total(State& state, int32_t count) {
+    float result = 0.0f;
+    for (int32_t k = 0; k < count; ++k) {
+        result = result + state.weights.load(k);
+        if (state.weights.contains(k))
+#line 33 "shader.py"
+            state.weights[k] = 0.0f;
+    }
+#line 34 "shader.py"
+    return result;
+}
+
+#line 38 "shader.py"
+void raygen_checked(OxrtThread& thread) {
+    const Params& params = oxrt::launchParams<Params>(thread);
+#line 39 "shader.py"
+    oxrt::uint3 i = oxrt::getLaunchIndex(thread);
+    [[maybe_unused]] uint32_t unread = i.x + 1u;
+    State state = State{oxrt::FixedArray<float, 4>{}};
+    if (state.weights.contains(i.x % 4u))
+#line 42 "shader.py"
+        state.weights[i.x % 4u] = 1.0f;
+    Radiance ray = Radiance{oxrt::checked(thread).load(params.values, i.y, i.x)};
+    oxrt::trace<RadiancePrograms>(thread, params.scene, ray.color, oxrt::float3(0.0f, 0.0f, 1.0f), 0.0f, __builtin_inff(), 0.0f, 255u,
+            oxrt::KnownFlags<0>(), 0u, 1u, 0u, ray);
+#line 45 "shader.py"
+    oxrt::assertTrue(thread, ray.color.x >= 0.0f, "radiance is not negative");
+    oxrt::print(thread, ", ", "\n", "pixel", i.x, i.y, ray.color);
+    oxrt::float3 value = ray.color;
+#line 47 "shader.py"
+    float result = total(state, 3);
+#line 47 "shader.py"
+    if (oxrt::checked(thread).contains(params.values, i.y, i.x))
+#line 47 "shader.py"
+        params.values.at(i.y, i.x) = value * result;
+    if (oxrt::checked(thread).contains(params.values, 0, 0))
+#line 48 "shader.py"
+        params.values.at(0, 0).x = 1.0f;
+}
+
+#line 52 "shader.py"
+void closesthit_white(Radiance& ray) {
+    ray.color = oxrt::float3(1.0f);
+}
+
+#line 85 "pipeline.cpp"
+void RadiancePrograms::closestHit(oxrt::Ray& trace, Payload& payload, const OxrtRecordHeader& record) {
+    switch (record.programs[oxrt::SLOT_CLOSESTHIT]) {
+        case number::closesthit_white: closesthit_white(payload); break;
+        case OXRT_NO_PROGRAM: break;
+        default: oxrt::payloadMismatch(*trace.thread); break;
+    }
+}
+
+void run_raygen_checked(OxrtThread* thread, const OxrtTile* tile) {
+    oxrt::forEachIndex(*thread, *tile, [thread] {
+        raygen_checked(*thread);
+    });
+}
+
+const OxrtProgram programs[] = {
+    {"__raygen__checked", OXRT_KIND_RAYGEN, 0, run_raygen_checked},
+    {"__closesthit__white", OXRT_KIND_CLOSESTHIT, 0, nullptr},
+};
+const OxrtPipelineVariant variants[] = {{OXRT_ISA_ANY, 1, programs, 2}};
+static_assert(sizeof(Params) == 32);
+
+}  // namespace
+
+extern "C" __attribute__((visibility("default"))) const OxrtPipelineBinary oxrt_pipeline_v1 = {
+    OXRT_PIPELINE_ABI, 1, variants, 32, 1, "0.1.0"};

@@ -1,0 +1,85 @@
+/* Made by optixc. Compiled features:
+   atomics: shader.py:41
+   textures: shader.py:49
+*/
+#include <oxrt/device.h>
+#include <oxrt/device_texture.h>
+
+namespace {
+
+struct Photon {
+    oxrt::float3 position;
+    oxrt::float3 power;
+    uint8_t flags;
+};
+
+struct Store {
+    oxrt::Array<Photon, 1> photons;
+    oxrt::Array<uint32_t, 1> count;
+};
+
+struct Params {
+    Store store;
+    oxrt::Array<float, 1> sums;
+    oxrt::Array<oxrt::half4, 2> halves;
+    oxrt::Array<uint16_t, 3> volume;
+    uint64_t image;
+};
+
+/* Program numbers, as SBT records hold them. */
+namespace number {
+enum : int32_t { raygen_store };
+}
+
+#line 33 "shader.py"
+float next_float(Photon& state) {
+    state.position.x = state.position.x + 0.5f;
+    return state.position.x;
+}
+
+#line 39 "shader.py"
+void raygen_store(OxrtThread& thread) {
+    const Params& params = oxrt::launchParams<Params>(thread);
+#line 40 "shader.py"
+    oxrt::uint3 i = oxrt::getLaunchIndex(thread);
+    uint32_t slot = oxrt::atomicAdd(params.store.count.at(0), 1u);
+    Photon photon = Photon{oxrt::float3(1.0f), oxrt::float3(0.5f), uint8_t(3u)};
+    float result = next_float(photon);
+#line 43 "shader.py"
+    float result_2 = next_float(photon);
+#line 43 "shader.py"
+    oxrt::float2 uv = oxrt::float2(result, result_2);
+    if (int32_t(slot) < int32_t(params.store.photons.shape[0])) {
+        params.store.photons.at(slot) = photon;
+        params.store.photons.at(slot).flags = uint32_t(params.store.photons.at(0).flags) + 1u;
+        params.store.photons.at(slot).power.y = 2.0f;
+    }
+#line 48 "shader.py"
+    oxrt::atomicMax(params.sums.at(slot), uv.x);
+    oxrt::float4 texel = oxrt::tex2d(thread, params.image, uv.x, uv.y);
+    params.halves.at(i.y, i.x) = oxrt::convert<oxrt::half>(oxrt::float4(float(oxrt::half(texel.x)), float(oxrt::half(texel.y)),
+            float(oxrt::half(texel.z)), float(oxrt::half(texel.w))));
+#line 51 "shader.py"
+    params.volume.at(i.z, i.y, i.x) = oxrt::convert<uint32_t>(texel.x);
+    Photon copied = photon;
+    copied.power = oxrt::swizzle<0, 1, 2>(oxrt::convert<float>(params.halves.at(0, 0)));
+    params.store.photons.at(0) = copied;
+}
+
+#line 70 "pipeline.cpp"
+void run_raygen_store(OxrtThread* thread, const OxrtTile* tile) {
+    oxrt::forEachIndex(*thread, *tile, [thread] {
+        raygen_store(*thread);
+    });
+}
+
+const OxrtProgram programs[] = {
+    {"__raygen__store", OXRT_KIND_RAYGEN, 0, run_raygen_store},
+};
+const OxrtPipelineVariant variants[] = {{OXRT_ISA_ANY, 1, programs, 1}};
+static_assert(sizeof(Params) == 112);
+
+}  // namespace
+
+extern "C" __attribute__((visibility("default"))) const OxrtPipelineBinary oxrt_pipeline_v1 = {
+    OXRT_PIPELINE_ABI, 1, variants, 112, 1, "0.1.0"};

@@ -1,0 +1,140 @@
+/* Made by optixc. Compiled features:
+   atomics: shader.py:41
+   textures: shader.py:49
+*/
+#include <oxrt/device.h>
+#include <oxrt/device_texture.h>
+
+#include <oxrt/lanes_trace.h>
+
+namespace {
+
+enum { LANES = 16 };
+template <class T> using Wide = oxrt::Wide<T, LANES>;
+using Mask = oxrt::Lanes<bool, LANES>;
+using Lanes = oxrt::LanesThread<LANES>;
+using Rays = oxrt::RayLanes<LANES>;
+
+struct Photon {
+    oxrt::float3 position;
+    oxrt::float3 power;
+    uint8_t flags;
+};
+
+struct Store {
+    oxrt::Array<Photon, 1> photons;
+    oxrt::Array<uint32_t, 1> count;
+};
+
+struct Params {
+    Store store;
+    oxrt::Array<float, 1> sums;
+    oxrt::Array<oxrt::half4, 2> halves;
+    oxrt::Array<uint16_t, 3> volume;
+    uint64_t image;
+};
+
+struct PhotonWide;
+struct StoreWide;
+struct ParamsWide;
+}  // namespace
+template <> struct oxrt::WideType<Photon, 16> { using Type = PhotonWide; };
+template <> struct oxrt::WideType<Store, 16> { using Type = StoreWide; };
+template <> struct oxrt::WideType<Params, 16> { using Type = ParamsWide; };
+namespace {
+
+struct PhotonWide {
+    using IsWideStruct = void;
+    Wide<oxrt::float3> position;
+    Wide<oxrt::float3> power;
+    Wide<uint8_t> flags;
+    template <class F, class... S> static OXRT_INLINE void each(const F& f, S&... s) { f(s.position...); f(s.power...); f(s.flags...); }
+};
+
+struct StoreWide {
+    using IsWideStruct = void;
+    Wide<oxrt::Array<Photon, 1>> photons;
+    Wide<oxrt::Array<uint32_t, 1>> count;
+    template <class F, class... S> static OXRT_INLINE void each(const F& f, S&... s) { f(s.photons...); f(s.count...); }
+};
+
+struct ParamsWide {
+    using IsWideStruct = void;
+    Wide<Store> store;
+    Wide<oxrt::Array<float, 1>> sums;
+    Wide<oxrt::Array<oxrt::half4, 2>> halves;
+    Wide<oxrt::Array<uint16_t, 3>> volume;
+    Wide<uint64_t> image;
+    template <class F, class... S> static OXRT_INLINE void each(const F& f,
+            S&... s) { f(s.store...); f(s.sums...); f(s.halves...); f(s.volume...); f(s.image...); }
+};
+
+/* Program numbers, as SBT records hold them. */
+namespace number {
+enum : int32_t { raygen_store };
+}
+
+#line 33 "shader.py"
+float next_float(Photon& state) {
+    state.position.x = state.position.x + 0.5f;
+    return state.position.x;
+}
+
+
+void raygen_store_lanes([[maybe_unused]] Lanes& thread, [[maybe_unused]] Mask mask) {
+    const Params& params = oxrt::launchParams<Params>(thread);
+#line 40 "shader.py"
+    Wide<oxrt::uint3> i = oxrt::getLaunchIndex(thread);
+    Wide<uint32_t> slot = oxrt::mapActive(mask,
+            [&]([[maybe_unused]] int lane) { return oxrt::atomicAdd(oxrt::inLane(params.store.count.at(0), lane), oxrt::inLane(1u,
+            lane)); });
+#line 42 "shader.py"
+    Photon photon = Photon{oxrt::float3(1.0f), oxrt::float3(0.5f), uint8_t(3u)};
+    float result_ = next_float(photon);
+#line 43 "shader.py"
+    float result_2 = next_float(photon);
+#line 43 "shader.py"
+    oxrt::float2 uv = oxrt::float2(result_, result_2);
+    const Mask test = oxrt::convert<int32_t>(slot) < int32_t(params.store.photons.shape[0]);
+#line 44 "shader.py"
+    Mask mask_ = mask & test;
+#line 44 "shader.py"
+    if (oxrt::any(mask_)) {
+        oxrt::store<LANES>(mask_, oxrt::spread<16>(photon), params.store.photons, slot);
+        oxrt::eachElement<LANES>(mask_, [&, value = Wide<uint32_t>(uint32_t(params.store.photons.at(0).flags) + 1u)](auto& element,
+                int lane) { oxrt::extractLane(element.flags, value, lane); }, params.store.photons, slot);
+#line 47 "shader.py"
+        oxrt::eachElement<LANES>(mask_, [&, value = Wide<float>(2.0f)](auto& element, int lane) { oxrt::extractLane(element.power.y, value,
+                lane); }, params.store.photons, slot);
+    }
+#line 48 "shader.py"
+    oxrt::eachLane(mask, [&](int lane) { oxrt::atomicMax(oxrt::inLane(oxrt::load<LANES>(mask, params.sums, slot), lane), oxrt::inLane(uv.x,
+            lane)); });
+#line 49 "shader.py"
+    oxrt::float4 texel = oxrt::tex2d(*thread.thread, params.image, uv.x, uv.y);
+    oxrt::store<LANES>(mask, Wide<oxrt::float4>(oxrt::float4(float(oxrt::half(texel.x)), float(oxrt::half(texel.y)),
+            float(oxrt::half(texel.z)), float(oxrt::half(texel.w)))), params.halves, i.y, i.x);
+#line 51 "shader.py"
+    oxrt::store<LANES>(mask, Wide<uint32_t>(oxrt::convert<uint32_t>(texel.x)), params.volume, i.z, i.y, i.x);
+    Photon copied = photon;
+    copied.power = oxrt::swizzle<0, 1, 2>(oxrt::convert<float>(params.halves.at(0, 0)));
+    oxrt::store<LANES>(mask, oxrt::spread<16>(copied), params.store.photons, 0);
+}
+
+#line 125 "pipeline.cpp"
+void run_raygen_store(OxrtThread* thread, const OxrtTile* tile) {
+    oxrt::runBlocks<LANES>(*thread, *tile, [](Lanes& lanes, Mask mask) {
+        raygen_store_lanes(lanes, mask);
+    });
+}
+
+const OxrtProgram programs[] = {
+    {"__raygen__store", OXRT_KIND_RAYGEN, 0, run_raygen_store},
+};
+const OxrtPipelineVariant variants[] = {{OXRT_ISA_X86_64_V4, 16, programs, 1}};
+static_assert(sizeof(Params) == 112);
+
+}  // namespace
+
+extern "C" __attribute__((visibility("default"))) const OxrtPipelineBinary oxrt_pipeline_v1 = {
+    OXRT_PIPELINE_ABI, 1, variants, 112, 1, "0.1.0"};
