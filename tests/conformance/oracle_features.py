@@ -102,7 +102,7 @@ FEATURES: dict[str, Feature] = {
     "hit objects": Feature(False, _shader("hit_objects.py")),
     "traverse data": Feature(False, lambda harness: ox.make_hit_object),
     "callables": Feature(True, _shader("callables.py")),
-    "exceptions": Feature(False, _shader("throwing.py")),
+    "exceptions": Feature(True, _shader("throwing.py")),
     "payload types": Feature(False, _shader("payload_types.py")),
     "payload of 32 words": Feature(True, _shader("payload32.py")),
 }
