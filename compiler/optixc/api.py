@@ -40,9 +40,7 @@ class DeviceContext(Context):
         super().__init__(validation, log_callback, threads)
         self.cache = Cache(Path(cache_dir) if cache_dir is not None else None, lambda text: self.log(LOG_WARNING, "cache", text))
 
-    def module_create(
-        self, source: ModuleType | str | Path | Sequence[Any], *, include_dirs: Sequence[str | Path] = ()
-    ) -> Module:
+    def module_create(self, source: ModuleType | str | Path | Sequence[Any], *, include_dirs: Sequence[str | Path] = ()) -> Module:
         """The programs of a Python module or shader file (parsed, never run), or of a list of live functions.
 
         Raises CompileError with every error that the shader has, FileIoError for a file that cannot be read.

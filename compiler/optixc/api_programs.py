@@ -56,7 +56,9 @@ def program(function: Callable[P, R]) -> ProgramFunction[P, R]:
     if not callable(function):
         raise TypeError(f"@optixc.program decorates a function, not {function!r}")
     if program_kind(function.__name__) is None:
-        raise TypeError(f"{function.__name__} is not the name of a program; it begins with __raygen__, __miss__, __closesthit__, __anyhit__ ...")
+        raise TypeError(
+            f"{function.__name__} is not the name of a program; it begins with __raygen__, __miss__, __closesthit__, __anyhit__ ..."
+        )
     return ProgramFunction(function)
 
 

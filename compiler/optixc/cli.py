@@ -55,17 +55,25 @@ def main(arguments: Sequence[str] | None = None) -> int:
 def _parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(prog="optixc", description="Compiles shader programs in restricted Python to a shared object.")
     parser.add_argument("shader", nargs="?", type=Path, help="the shader file; it is parsed, never run")
-    parser.add_argument("-o", dest="output", type=Path, metavar="STEM", help="write STEM.so, STEM.h and STEM.json (default: the shader's name)")
+    parser.add_argument(
+        "-o", dest="output", type=Path, metavar="STEM", help="write STEM.so, STEM.h and STEM.json (default: the shader's name)"
+    )
     parser.add_argument("--emit", choices=EMIT_FORMS, help="print this form on standard output and write nothing")
     parser.add_argument("--print-after", metavar="PASS", help="print the IR after this pass on standard output")
     parser.add_argument("--bind", action="append", default=[], metavar="NAME=VALUE", help="make a launch parameter a constant")
-    parser.add_argument("-I", dest="include_dirs", action="append", default=[], type=Path, metavar="DIR", help="look for helper files here too")
+    parser.add_argument(
+        "-I", dest="include_dirs", action="append", default=[], type=Path, metavar="DIR", help="look for helper files here too"
+    )
     parser.add_argument("--simd", choices=("auto", "1", "8", "16"), default="auto", help="lanes of a packet (default: auto)")
     parser.add_argument("--target", choices=TARGETS, default="native", help="instruction set (default: this machine's)")
     parser.add_argument("--math", choices=("precise", "fast"), default="precise")
-    parser.add_argument("--max-trace-depth", type=int, default=1, metavar="N", help=f"nesting of traces, 0 to {MAX_TRACE_DEPTH} (default: 1)")
+    parser.add_argument(
+        "--max-trace-depth", type=int, default=1, metavar="N", help=f"nesting of traces, 0 to {MAX_TRACE_DEPTH} (default: 1)"
+    )
     parser.add_argument("--debug", action="store_true", help="bounds checks, assertions, line information, no optimisation")
-    parser.add_argument("-O", dest="optimization", type=int, choices=(0, 1, 2, 3), default=3, help="optimisation of the C++ compiler (default: 3)")
+    parser.add_argument(
+        "-O", dest="optimization", type=int, choices=(0, 1, 2, 3), default=3, help="optimisation of the C++ compiler (default: 3)"
+    )
     parser.add_argument("--depfile", type=Path, metavar="FILE", help="write the files that the output depends on, in make's form")
     parser.add_argument("--version", action="version", version=f"optixc {__version__}")
     parser.add_argument("--print-config", action="store_true", help="compilers, Embree, include folder, cache")
@@ -135,7 +143,9 @@ def _write(chosen: argparse.Namespace, unit: driver.Unit, names: list[str], opti
         outputs[2].write_text(json.dumps(_manifest(unit, emitted.pipeline, built), indent=2) + "\n")
         if chosen.depfile is not None:
             files = [str(chosen.shader), *unit.result.dependencies]
-            chosen.depfile.write_text(f"{' '.join(map(_make_word, map(str, outputs)))}: {' '.join(map(_make_word, dict.fromkeys(files)))}\n")
+            chosen.depfile.write_text(
+                f"{' '.join(map(_make_word, map(str, outputs)))}: {' '.join(map(_make_word, dict.fromkeys(files)))}\n"
+            )
     except OSError as error:
         raise FileIoError(f"{error.filename or stem} cannot be written: {error.strerror}") from error
 
@@ -145,7 +155,9 @@ def _manifest(unit: driver.Unit, pipeline: nodes.Pipeline, built: driver.Built) 
         "optixc": __version__,
         "params": built.params,
         "programs": unit.programs,
-        "structs": {struct.name: {"size": layout.size_of(struct), "layout": layout.describe(struct)} for struct in _memory_structs(pipeline)},
+        "structs": {
+            struct.name: {"size": layout.size_of(struct), "layout": layout.describe(struct)} for struct in _memory_structs(pipeline)
+        },
         "max_trace_depth": pipeline.options.max_trace_depth,
         "lanes": pipeline.options.lanes,
         "compiler": built.report["compiler"],

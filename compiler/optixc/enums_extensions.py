@@ -59,30 +59,30 @@ class ClusterAccelPrimitiveFlags(IntFlag):
 class ClusterIDValues(IntEnum):
     """OptiX's `OptixClusterIDValues`."""
 
-    INVALID = 0xffffffff
+    INVALID = 0xFFFFFFFF
 
 
 class CoopVecElemType(IntEnum):
     """OptiX's `OptixCoopVecElemType`."""
 
-    UNKNOWN = 0x2a00
-    FLOAT16 = 0x2a01
-    FLOAT32 = 0x2a03
-    UINT8 = 0x2a04
-    INT8 = 0x2a05
-    UINT32 = 0x2a08
-    INT32 = 0x2a09
-    FLOAT8_E4M3 = 0x2a0a
-    FLOAT8_E5M2 = 0x2a0b
+    UNKNOWN = 0x2A00
+    FLOAT16 = 0x2A01
+    FLOAT32 = 0x2A03
+    UINT8 = 0x2A04
+    INT8 = 0x2A05
+    UINT32 = 0x2A08
+    INT32 = 0x2A09
+    FLOAT8_E4M3 = 0x2A0A
+    FLOAT8_E5M2 = 0x2A0B
 
 
 class CoopVecMatrixLayout(IntEnum):
     """OptiX's `OptixCoopVecMatrixLayout`."""
 
-    ROW_MAJOR = 0x2a40
-    COLUMN_MAJOR = 0x2a41
-    INFERENCING_OPTIMAL = 0x2a42
-    TRAINING_OPTIMAL = 0x2a43
+    ROW_MAJOR = 0x2A40
+    COLUMN_MAJOR = 0x2A41
+    INFERENCING_OPTIMAL = 0x2A42
+    TRAINING_OPTIMAL = 0x2A43
 
 
 class DenoiserAOVType(IntEnum):
@@ -168,11 +168,11 @@ class DisplacementMicromapTriangleFlags(IntFlag):
 class PixelFormat(IntEnum):
     """OptiX's `OptixPixelFormat`."""
 
-    HALF1 = 0x220a
+    HALF1 = 0x220A
     HALF2 = 0x2207
     HALF3 = 0x2201
     HALF4 = 0x2202
-    FLOAT1 = 0x220b
+    FLOAT1 = 0x220B
     FLOAT2 = 0x2208
     FLOAT3 = 0x2203
     FLOAT4 = 0x2204

@@ -29,7 +29,7 @@ class DeviceContextValidationMode(IntEnum):
     """OptiX's `OptixDeviceContextValidationMode`."""
 
     OFF = 0
-    ALL = 0xffffffff
+    ALL = 0xFFFFFFFF
 
 
 class DeviceProperty(IntEnum):
@@ -44,8 +44,8 @@ class DeviceProperty(IntEnum):
     LIMIT_NUM_BITS_INSTANCE_VISIBILITY_MASK = 0x2007
     LIMIT_MAX_SBT_RECORDS_PER_GAS = 0x2008
     LIMIT_MAX_SBT_OFFSET = 0x2009
-    SHADER_EXECUTION_REORDERING = 0x200a
-    COOP_VEC = 0x200b
+    SHADER_EXECUTION_REORDERING = 0x200A
+    COOP_VEC = 0x200B
     CLUSTER_ACCEL = 0x2020
     LIMIT_MAX_CLUSTER_VERTICES = 0x2021
     LIMIT_MAX_CLUSTER_TRIANGLES = 0x2022
@@ -117,7 +117,7 @@ class PayloadSemantics(IntFlag):
     AH_NONE = 0
     AH_READ = 64
     AH_WRITE = 128
-    AH_READ_WRITE = 0xc0
+    AH_READ_WRITE = 0xC0
     IS_NONE = 0
     IS_READ = 0x100
     IS_WRITE = 0x200

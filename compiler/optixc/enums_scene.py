@@ -66,8 +66,8 @@ class GeometryFlags(IntFlag):
 class HitKind(IntEnum):
     """OptiX's `OptixHitKind`."""
 
-    FRONT_FACE = 0xfe
-    BACK_FACE = 0xff
+    FRONT_FACE = 0xFE
+    BACK_FACE = 0xFF
 
 
 class IndicesFormat(IntEnum):
@@ -136,8 +136,8 @@ class PrimitiveType(IntEnum):
     ROUND_CUBIC_BEZIER = 0x2507
     ROUND_QUADRATIC_BSPLINE_ROCAPS = 0x2508
     ROUND_CUBIC_BSPLINE_ROCAPS = 0x2509
-    ROUND_CATMULLROM_ROCAPS = 0x250a
-    ROUND_CUBIC_BEZIER_ROCAPS = 0x250b
+    ROUND_CATMULLROM_ROCAPS = 0x250A
+    ROUND_CUBIC_BEZIER_ROCAPS = 0x250B
     TRIANGLE = 0x2531
     DISPLACED_MICROMESH_TRIANGLE = 0x2532
 
@@ -180,7 +180,7 @@ class TransformFormat(IntEnum):
     """OptiX's `OptixTransformFormat`."""
 
     NONE = 0
-    MATRIX_FLOAT12 = 0x21e1
+    MATRIX_FLOAT12 = 0x21E1
 
 
 class TransformType(IntEnum):
@@ -204,9 +204,9 @@ class TraversableGraphFlags(IntFlag):
 class TraversableType(IntEnum):
     """OptiX's `OptixTraversableType`."""
 
-    STATIC_TRANSFORM = 0x21c1
-    MATRIX_MOTION_TRANSFORM = 0x21c2
-    SRT_MOTION_TRANSFORM = 0x21c3
+    STATIC_TRANSFORM = 0x21C1
+    MATRIX_MOTION_TRANSFORM = 0x21C2
+    SRT_MOTION_TRANSFORM = 0x21C3
 
 
 class VertexFormat(IntEnum):

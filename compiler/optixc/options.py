@@ -31,7 +31,7 @@ class PipelineCompileOptions:
     num_payload_values: int = 0
     num_attribute_values: int = 2
     exception_flags: ExceptionFlags = ExceptionFlags.NONE
-    uses_primitive_type_flags: PrimitiveTypeFlags = PrimitiveTypeFlags(0)
+    uses_primitive_type_flags: PrimitiveTypeFlags | int = 0
     allow_opacity_micromaps: bool = False
     allow_clustered_geometry: bool = False
 

@@ -35,7 +35,17 @@ def test_a_shader_is_a_build_step(tmp_path: Path, generator: str, monkeypatch: p
     source, build = tmp_path / "source", tmp_path / "build"
     shutil.copytree(SOURCE, source)
     make = tool("ninja" if generator == "Ninja" else "make")
-    run(tool("cmake"), "-S", source, "-B", build, "-G", generator, f"-DCMAKE_MAKE_PROGRAM={make}", f"-Doptixc_DIR={installation.cmake_folder()}")
+    run(
+        tool("cmake"),
+        "-S",
+        source,
+        "-B",
+        build,
+        "-G",
+        generator,
+        f"-DCMAKE_MAKE_PROGRAM={make}",
+        f"-Doptixc_DIR={installation.cmake_folder()}",
+    )
     assert "Compiling shader squares.py" in run(tool("cmake"), "--build", build)
     assert run(build / "consumer").split() == ["0", "1", "4", "9", "16"]
 
@@ -57,5 +67,5 @@ def test_an_error_in_the_shader_fails_the_build_with_its_place(tmp_path: Path) -
     run(tool("cmake"), "-S", source, "-B", build, f"-Doptixc_DIR={installation.cmake_folder()}")
     done = subprocess.run([tool("cmake"), "--build", str(build)], capture_output=True, text=True, check=False, timeout=300)
     assert done.returncode != 0
-    assert "squares.py:18:30:" in done.stdout + done.stderr
+    assert "squares.py:19:30:" in done.stdout + done.stderr
     assert "error[OX301]" in done.stdout + done.stderr

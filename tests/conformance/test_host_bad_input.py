@@ -276,8 +276,16 @@ def test_wrong_context_options(options: dict[str, Any]) -> None:
 
 @pytest.mark.parametrize(
     "options",
-    [{"simd": 4}, {"simd": "16"}, {"math": "exact"}, {"max_trace_depth": 32}, {"max_trace_depth": -1}, {"bound_values": {"nothing": 1}},
-     {"bound_values": {"hits": 1}}, {"bound_values": {"scale": "x"}}],
+    [
+        {"simd": 4},
+        {"simd": "16"},
+        {"math": "exact"},
+        {"max_trace_depth": 32},
+        {"max_trace_depth": -1},
+        {"bound_values": {"nothing": 1}},
+        {"bound_values": {"hits": 1}},
+        {"bound_values": {"scale": "x"}},
+    ],
 )
 def test_wrong_pipeline_options(scene: Scene, options: dict[str, Any]) -> None:
     with pytest.raises(ox.InvalidValueError):

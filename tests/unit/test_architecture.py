@@ -24,7 +24,20 @@ LAYERS = {
     "codegen": {"ir", "source", "passes", "version"},
     "host": {"errors", "enums", "installation"},
     "interpret": {"ir", "host", "frontend", "source", "errors", "enums"},
-    "driver": {"frontend", "passes", "codegen", "ir", "source", "cache", "toolchain", "options", "errors", "enums", "installation", "version"},
+    "driver": {
+        "frontend",
+        "passes",
+        "codegen",
+        "ir",
+        "source",
+        "cache",
+        "toolchain",
+        "options",
+        "errors",
+        "enums",
+        "installation",
+        "version",
+    },
 }
 NO_NAMES = {"utils", "common", "helpers", "base", "manager", "misc"}
 

@@ -22,7 +22,6 @@ def writes(data: bytes) -> Callable[[Path], object]:
     return lambda output: output.write_bytes(data)
 
 
-
 def test_what_was_stored_is_found(tmp_path: Path) -> None:
     store, warnings = opened(tmp_path)
     made = store.store("k", {"a": 1}, writes(b"code"))

@@ -70,7 +70,16 @@ def test_dtype_has_no_hidden_padding_rule() -> None:
 
 @pytest.mark.parametrize(
     ("type_", "words"),
-    [(t.BOOL, 1), (t.UINT8, 1), (t.FLOAT32, 1), (t.FLOAT64, 2), (t.FLOAT3, 3), (t.TRAVERSABLE, 2), (INNER, 4), (t.FixedArray(t.INT64, 2), 4)],
+    [
+        (t.BOOL, 1),
+        (t.UINT8, 1),
+        (t.FLOAT32, 1),
+        (t.FLOAT64, 2),
+        (t.FLOAT3, 3),
+        (t.TRAVERSABLE, 2),
+        (INNER, 4),
+        (t.FixedArray(t.INT64, 2), 4),
+    ],
 )
 def test_payload_words(type_: t.Type, words: int) -> None:
     assert layout.payload_words(type_) == words

@@ -25,7 +25,9 @@ def test_errors_have_optixs_codes() -> None:
     assert errors.from_code(7251) is ox.PipelineLinkError
     assert errors.from_code(7900) is ox.LaunchCancelledError
     assert errors.from_code(12345) is ox.OptixError
-    assert {int(code) for code in ox.Result if code} == {int(kind.code) for kind in ox.OptixError.__subclasses__() if kind.__module__ == errors.__name__}
+    assert {int(code) for code in ox.Result if code} == {
+        int(kind.code) for kind in ox.OptixError.__subclasses__() if kind.__module__ == errors.__name__
+    }
 
 
 def test_programs_cannot_be_called() -> None:

@@ -7,7 +7,9 @@ handles.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Annotated, Any, Generic, TypeVar
+
+import numpy as np
 
 from optixc.host import scalars
 from optixc.host.fields import ArrayField, FieldType, FixedArrayField, HandleField, MatrixField, ScalarField, VectorField
@@ -32,7 +34,23 @@ class FixedArrayAnnotation:
 
 
 if TYPE_CHECKING:
-    Array = Array2 = Array3 = FixedArray = Traversable = Texture = Any
+    T = TypeVar("T")
+
+    class _View(Generic[T]):
+        """What a shader may do with an array; the host gives a numpy array."""
+
+        shape: tuple[int, ...]
+
+        def __getitem__(self, index: Any) -> T: ...
+        def __setitem__(self, index: Any, value: T) -> None: ...
+        def __len__(self) -> int: ...
+
+    Array = np.ndarray[Any, Any] | _View[T]
+    Array2 = np.ndarray[Any, Any] | _View[T]
+    Array3 = np.ndarray[Any, Any] | _View[T]
+    FixedArray = Annotated
+    Traversable = Any
+    Texture = Any
 else:
 
     class Array:

@@ -35,7 +35,9 @@ class FieldType(Protocol):
 
 def refuse(where: str, wanted: str, value: object) -> InvalidValueError:
     """The error for a value that a field does not take."""
-    got = f"an array of {value.dtype} with shape {value.shape}" if isinstance(value, np.ndarray) else f"{type(value).__name__} {value!r:.60}"
+    got = (
+        f"an array of {value.dtype} with shape {value.shape}" if isinstance(value, np.ndarray) else f"{type(value).__name__} {value!r:.60}"
+    )
     return InvalidValueError(f"{where} takes {wanted}, not {got}")
 
 
@@ -257,7 +259,9 @@ class ArrayField:
             struct.pack_into(f"<{1 + self.rank}Q", buffer, offset, *([0] * (1 + self.rank)))
             return None
         if not isinstance(value, np.ndarray):
-            raise InvalidValueError(f"{where} takes a numpy array ({self._wanted()}), whose memory shaders then use, not {type(value).__name__}")
+            raise InvalidValueError(
+                f"{where} takes a numpy array ({self._wanted()}), whose memory shaders then use, not {type(value).__name__}"
+            )
         self._check(value, where)
         struct.pack_into(f"<{1 + self.rank}Q", buffer, offset, value.ctypes.data if value.size else 0, *value.shape[: self.rank])
         return value
@@ -271,11 +275,15 @@ class ArrayField:
         if array.ndim != self.rank + len(inner) or array.shape[self.rank :] != inner:
             raise InvalidValueError(f"{where} takes {self._wanted()}, {got}")
         if not array.flags.c_contiguous:
-            raise InvalidValueError(f"{where} takes a C-contiguous array; use numpy.ascontiguousarray(array) and keep the result to read it back")
+            raise InvalidValueError(
+                f"{where} takes a C-contiguous array; use numpy.ascontiguousarray(array) and keep the result to read it back"
+            )
         if not array.flags.aligned:
             raise InvalidValueError(f"{where} takes an array aligned as its element; use array.copy()")
 
     def _wanted(self) -> str:
         base, inner = self.element.dtype.base, self.element.dtype.shape
         axes = [*"nml"[: self.rank], *map(str, inner)]
-        return f"{self.text}: dtype {'of the struct' if base.names else base.name}, shape ({', '.join(axes)}{',' if len(axes) == 1 else ''})"
+        return (
+            f"{self.text}: dtype {'of the struct' if base.names else base.name}, shape ({', '.join(axes)}{',' if len(axes) == 1 else ''})"
+        )

@@ -43,9 +43,13 @@ class Instance:
 
 def take_array(value: Any, dtype: Any, shape: tuple[int | str, ...], where: str) -> np.ndarray[Any, Any]:
     """`value` itself if it is a C-contiguous array of `dtype` and `shape` (names stand for any size), else a clear error."""
-    wanted = f"{where} takes a C-contiguous {np.dtype(dtype).name} array of shape ({', '.join(map(str, shape))}{',' if len(shape) == 1 else ''})"
+    wanted = (
+        f"{where} takes a C-contiguous {np.dtype(dtype).name} array of shape ({', '.join(map(str, shape))}{',' if len(shape) == 1 else ''})"
+    )
     if not isinstance(value, np.ndarray):
-        raise InvalidValueError(f"{wanted}, not {type(value).__name__}; make one with numpy.ascontiguousarray(..., numpy.{np.dtype(dtype).name})")
+        raise InvalidValueError(
+            f"{wanted}, not {type(value).__name__}; make one with numpy.ascontiguousarray(..., numpy.{np.dtype(dtype).name})"
+        )
     if value.dtype != dtype:
         raise InvalidValueError(f"{wanted}, not {value.dtype}; convert with array.astype(numpy.{np.dtype(dtype).name})")
     fits = value.ndim == len(shape) and all(isinstance(want, str) or want == got for want, got in zip(shape, value.shape, strict=True))

@@ -21,7 +21,9 @@ class Matrix:
     def __init__(self, *parts: Any) -> None:
         numbers = np.concatenate([np.ravel(np.asarray(part, np.float32)) for part in parts]) if parts else np.zeros(0, np.float32)
         if numbers.size != self.rows * self.columns:
-            raise TypeError(f"{type(self).__name__} takes {self.rows * self.columns} numbers or {self.rows} rows, not {numbers.size} numbers")
+            raise TypeError(
+                f"{type(self).__name__} takes {self.rows * self.columns} numbers or {self.rows} rows, not {numbers.size} numbers"
+            )
         array = numbers.reshape(self.rows, self.columns)
         array.flags.writeable = False
         object.__setattr__(self, "_array", array)
@@ -42,7 +44,9 @@ class Matrix:
         return np.array(self._array, dtype or np.float32)
 
     def __eq__(self, other: object) -> bool:
-        return bool(np.array_equal(self._array, other._array)) if type(other) is type(self) and isinstance(other, Matrix) else NotImplemented
+        return (
+            bool(np.array_equal(self._array, other._array)) if type(other) is type(self) and isinstance(other, Matrix) else NotImplemented
+        )
 
     def __hash__(self) -> int:
         return hash((type(self).__name__, self._array.tobytes()))

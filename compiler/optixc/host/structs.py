@@ -6,6 +6,7 @@ and writes it. Whoever copied an instance's bytes (an outer struct, an SBT recor
 
 from __future__ import annotations
 
+import inspect
 import sys
 import weakref
 from collections.abc import Callable
@@ -254,7 +255,9 @@ def _make(cls: type[T], kind: str, names: dict[str, Any]) -> type[T]:
     body = {name: value for name, value in vars(cls).items() if name not in ("__dict__", "__weakref__")}
     for field in layout.fields:
         body.pop(field.name, None)
-    body.update(__qualname__=cls.__qualname__, __optixc_layout__=layout, __optixc_kind__=kind, dtype=layout.dtype, nbytes=layout.dtype.itemsize)
+    body.update(
+        __qualname__=cls.__qualname__, __optixc_layout__=layout, __optixc_kind__=kind, dtype=layout.dtype, nbytes=layout.dtype.itemsize
+    )
     body["__match_args__"] = tuple(field.name for field in layout.fields)
     made: Any = type(cls.__name__, (_Structure, *(base for base in cls.__bases__ if base is not object)), body)
     made.__optixc_field__ = StructField(made)
@@ -267,7 +270,7 @@ def _layout(cls: type[Any], names: dict[str, Any]) -> Layout:
     scope = {**vars(sys.modules[cls.__module__]), **names} if cls.__module__ in sys.modules else names
     offset, alignment = 0, 1
     fields: list[Field] = []
-    for name, annotation in cls.__dict__.get("__annotations__", {}).items():
+    for name, annotation in inspect.get_annotations(cls).items():
         resolved = eval(annotation, scope) if isinstance(annotation, str) else annotation
         try:
             type_ = field_type(resolved)

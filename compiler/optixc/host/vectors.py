@@ -162,7 +162,11 @@ def _to_integer(number: Any, element: np.dtype[Any]) -> int:
         value = float(number)
         if value != value:
             return 0
-        return int(max(min(value, float(limits.max)), float(limits.min))) if abs(value) < 2.0**63 else int(limits.max if value > 0 else limits.min)
+        return (
+            int(max(min(value, float(limits.max)), float(limits.min)))
+            if abs(value) < 2.0**63
+            else int(limits.max if value > 0 else limits.min)
+        )
     wrapped = int(number) & ((1 << limits.bits) - 1)
     return wrapped - (1 << limits.bits) if limits.min < 0 and wrapped > limits.max else wrapped
 

@@ -1,7 +1,8 @@
 """Writes a function of the launch index; the function is another file's."""
 
-import optixc as ox
 from power import power
+
+import optixc as ox
 
 
 @ox.struct

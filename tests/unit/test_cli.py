@@ -1,0 +1,131 @@
+"""The command: what it prints, what it writes, how it ends."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+
+from optixc import cli, toolchain
+
+SHADER = """import optixc as ox
+from half import half
+
+@ox.struct
+class Params:
+    values: ox.Array[ox.float32]
+    scale: float
+
+params = ox.launch_params(Params)
+
+@ox.program
+def __raygen__fill():
+    i = ox.get_launch_index().x
+    params.values[i] = half(params.scale)
+"""
+HELPER = """import optixc as ox
+
+@ox.device
+def half(x: float) -> float:
+    return 0.5 * x
+"""
+SIDE_EFFECT = "\nraise SystemExit('the file was run')\n"
+
+
+@pytest.fixture
+def shader(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setenv("OPTIXC_CACHE_DIR", str(tmp_path / "cache"))
+    (tmp_path / "half.py").write_text(HELPER)
+    path = tmp_path / "shader.py"
+    path.write_text(SHADER + SIDE_EFFECT)
+    return path
+
+
+def test_writes_library_header_and_manifest(shader: Path, tmp_path: Path) -> None:
+    assert cli.main(["shader.py", "-o", "out/made", "--depfile", "out/made.d"]) == 0
+    assert (tmp_path / "out/made.so").read_bytes()[:4] == b"\x7fELF"
+    assert "typedef struct Params" in (tmp_path / "out/made.h").read_text()
+    manifest = json.loads((tmp_path / "out/made.json").read_text())
+    assert manifest["params"] == {"name": "Params", "layout": "values:Array1[float32]@0;scale:float32@16", "size": 24}
+    assert [program["name"] for program in manifest["programs"]] == ["__raygen__fill"]
+    outputs, inputs = (tmp_path / "out/made.d").read_text().split(":", 1)
+    assert outputs.split() == ["out/made.so", "out/made.h", "out/made.json"]
+    assert [Path(name).name for name in inputs.split()] == ["shader.py", "half.py"]
+
+
+def test_the_default_output_is_named_after_the_shader(shader: Path, tmp_path: Path) -> None:
+    assert cli.main([str(shader), "-O1"]) == 0
+    assert {"shader.so", "shader.h", "shader.json"} <= {path.name for path in tmp_path.iterdir()}
+
+
+@pytest.mark.parametrize(
+    ("form", "expected"),
+    [
+        ("ast", "FunctionDef("),
+        ("types", "params.scale: float32"),
+        ("ir", "__raygen__fill"),
+        ("cpp", "#include <oxrt/device.h>"),
+        ("asm", "oxrt_pipeline_v1"),
+        ("header", "typedef struct Params"),
+    ],
+)
+def test_emitted_forms(shader: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str], form: str, expected: str) -> None:
+    assert cli.main(["shader.py", "--emit", form]) == 0
+    assert expected in capsys.readouterr().out
+    assert not (tmp_path / "shader.so").exists()
+
+
+def test_print_after_a_pass(shader: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert cli.main(["shader.py", "--print-after", "specialize", "--bind", "scale=3.0"]) == 0
+    assert "3.0" in capsys.readouterr().out
+    assert cli.main(["shader.py", "--print-after", "nothing"]) == cli.EXIT_USAGE
+    assert "specialize" in capsys.readouterr().err
+
+
+def test_errors_of_the_shader(shader: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    shader.write_text(SHADER.replace("half(params.scale)", "half(nothing) + other"))
+    assert cli.main(["shader.py"]) == cli.EXIT_SHADER
+    printed = capsys.readouterr().err
+    assert printed.count("shader.py:14:") == 2
+    assert printed.count("error[OX") == 2
+    assert "Traceback" not in printed
+
+
+@pytest.mark.parametrize("arguments", [[], ["none.py"], ["shader.py", "--simd", "3"], ["shader.py", "--bind", "scale"]])
+def test_wrong_usage(shader: Path, capsys: pytest.CaptureFixture[str], arguments: list[str]) -> None:
+    try:
+        code = cli.main(arguments)
+    except SystemExit as end:
+        code = int(str(end.code))
+    assert code == cli.EXIT_USAGE
+    assert "optixc: " in capsys.readouterr().err
+
+
+def test_wrong_bound_values(shader: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    for text in ("scale='x'", "nothing=1", "scale=import"):
+        assert cli.main(["shader.py", "--bind", text]) == cli.EXIT_USAGE
+        assert "optixc: " in capsys.readouterr().err
+
+
+def test_a_missing_tool_chain(shader: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
+    monkeypatch.setenv("PATH", "/nowhere")
+    monkeypatch.delenv("OPTIXC_CXX", raising=False)
+    monkeypatch.setattr(toolchain, "_versions", {})
+    assert cli.main(["shader.py"]) == cli.EXIT_TOOLCHAIN
+    assert "install g++" in capsys.readouterr().err
+
+
+def test_configuration_tells_what_is_there(shader: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert cli.main(["--print-config"]) == 0
+    printed = capsys.readouterr().out
+    for word in ("compiler: ", "embree: 4.", "include folder: ", "cmake package: ", "cache: ", "processor lanes: "):
+        assert word in printed
+
+
+def test_the_version(capsys: pytest.CaptureFixture[str]) -> None:
+    with pytest.raises(SystemExit) as end:
+        cli.main(["--version"])
+    assert end.value.code == 0
+    assert capsys.readouterr().out.startswith("optixc 0.")
