@@ -79,3 +79,12 @@ def __raygen__b():
     f = two()  # E[OX305]: misses `a`
     g = two(1, 2, 3)  # E[OX305]: takes 2 arguments, here are 3
     h = two(1)
+
+
+def doubled(x, x):  # E[OX404]: two parameters are called `x`
+    return x
+
+
+@ox.program
+def __miss__doubled(r: Material, r: Ray):  # E[OX404]: two parameters are called `r`
+    y = doubled(1, 2)

@@ -12,7 +12,7 @@ from collections.abc import Sequence
 from optixc.diagnostics import ChainLink
 from optixc.frontend.annotations import resolve_type
 from optixc.frontend.check_expr import check_expression
-from optixc.frontend.check_program import check_requirements, program_parameters
+from optixc.frontend.check_program import check_parameter_names, check_requirements, program_parameters
 from optixc.frontend.check_returns import check_returns
 from optixc.frontend.check_stmt import check_block
 from optixc.frontend.checked import ConstantUse, ExprInfo, FunctionInstance, InstanceParameter
@@ -132,6 +132,8 @@ class Checker:
     def _parameter_types(self, c: Context, symbol: FunctionSymbol, types: Sequence[t.Type | None]) -> list[t.Type] | None:
         """Annotated parameters have their annotation, the others the argument's type; None after a diagnostic."""
         arguments = symbol.node.args
+        if not check_parameter_names(c, symbol):
+            return None
         for star, text in ((arguments.vararg, "*"), (arguments.kwarg, "**")):
             if star is not None:
                 c.error("OX404", star, f"`{text}{star.arg}` is not part of restricted Python", "name the parameters one by one")

@@ -25,6 +25,8 @@ def program_parameters(c: Context, symbol: FunctionSymbol) -> list[InstanceParam
     kind = symbol.kind
     assert kind is not None
     arguments = symbol.node.args
+    if not check_parameter_names(c, symbol):
+        return []
     if arguments.vararg or arguments.kwarg or arguments.kwonlyargs or arguments.defaults:
         place = arguments.vararg or arguments.kwarg or (arguments.kwonlyargs or arguments.defaults)[0]
         c.error("OX404", place, "a program takes plain parameters only", "no `*`, no `**`, no defaults")
@@ -50,6 +52,18 @@ def program_parameters(c: Context, symbol: FunctionSymbol) -> list[InstanceParam
         by_reference = by_reference and role is not ParameterRole.ATTRIBUTES
         found.append(InstanceParameter(Local(argument.arg, type_, by_reference=by_reference), role))
     return found
+
+
+def check_parameter_names(c: Context, symbol: FunctionSymbol) -> bool:
+    """Two parameters of one name pass CPython's parser, so they are found here."""
+    seen: set[str] = set()
+    arguments = symbol.node.args
+    for argument in (*arguments.posonlyargs, *arguments.args, *arguments.kwonlyargs):
+        if argument.arg in seen:
+            c.error("OX404", argument, f"two parameters are called `{argument.arg}`", "give one another name")
+            return False
+        seen.add(argument.arg)
+    return True
 
 
 def _role(kind: ProgramKind, type_: t.Type) -> ParameterRole | None:

@@ -112,6 +112,8 @@ def _check_return(c: Context, node: ast.Return) -> bool:
 
 def _check_jump(c: Context, node: ast.Break | ast.Continue) -> bool:
     if not c.loops:
+        word = "break" if isinstance(node, ast.Break) else "continue"
+        c.error("OX401", node, f"`{word}` outside of a loop", "write return to leave the program")
         return False
     loop = c.loops[-1]
     if isinstance(node, ast.Break):

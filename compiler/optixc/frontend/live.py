@@ -26,7 +26,16 @@ from optixc.frontend.declarations import Declarations
 from optixc.frontend.declare import Declarer
 from optixc.frontend.parse import ParsedFile, parse_text
 from optixc.frontend.source_file import Diagnostics, SourceFile
-from optixc.frontend.symbols import EnumSymbol, FunctionSymbol, OptixNamespace, Symbol, ValueSymbol, VectorSymbol
+from optixc.frontend.symbols import (
+    EnumSymbol,
+    FunctionSymbol,
+    OptixNamespace,
+    ParamsSymbol,
+    StructSymbol,
+    Symbol,
+    ValueSymbol,
+    VectorSymbol,
+)
 from optixc.source import Span
 
 
@@ -78,6 +87,20 @@ class _Reader:
         known = scope.lookup(name)
         symbol = known if isinstance(known, FunctionSymbol) and known.node is node else self.declarer.function_symbol(scope, node)
         return symbol if isinstance(symbol, FunctionSymbol) else self._no_source(name, "it is decorated by host code")
+
+    def struct(self, kind: type[Any]) -> Symbol | None:
+        """The symbol of a live struct class, e.g. of an earlier notebook cell: its definition is looked up by name."""
+        cells = [name for name in linecache.cache if not name.endswith(".py") or "ipykernel" in name]
+        own = getattr(sys.modules.get(kind.__module__), "__file__", None)
+        for filename in ([own] if own else []) + cells[::-1]:
+            if f"class {kind.__name__}" not in "".join(linecache.getlines(filename)):
+                continue
+            file = self._file(filename, kind.__module__)
+            scope = self._scope(file, []) if file is not None else None
+            symbol = scope.lookup(kind.__name__) if scope is not None else None
+            if isinstance(symbol, StructSymbol):
+                return symbol
+        return None
 
     def _scope(self, file: ParsedFile, outer: list[ast.AST]) -> Declarations:
         """The scope that the functions inside `outer` share; each knows what all of them captured."""
@@ -170,6 +193,12 @@ class _Captured:
         known = getattr(value, "__name__", "")
         if known and (getattr(value, "__module__", None) or "").startswith("optixc") and builtin_symbol(known) is not None:
             return builtin_symbol(known)
+        if isinstance(value, type) and hasattr(value, "__optixc_kind__"):
+            return self._reader.struct(value)
+        parameters = getattr(value, "__dict__", {}).get("__optixc_params__")
+        if parameters is not None:
+            struct = self._reader.struct(parameters)
+            return ParamsSymbol(struct.type, struct.span) if isinstance(struct, StructSymbol) else None
         if inspect.isfunction(getattr(value, "__wrapped__", value)):
             return self._reader.function(value)
         return None

@@ -22,7 +22,7 @@ from optixc.frontend.checked import (
     TraceUse,
 )
 from optixc.frontend.lower_block import Block, FunctionLowering, literal
-from optixc.frontend.lower_convert import component, convert, is_simple, narrow
+from optixc.frontend.lower_convert import component, convert, is_simple, narrow, numbers_of
 from optixc.frontend.lower_place import lower_place_of
 from optixc.frontend.weak import widened
 from optixc.ir import types as t
@@ -147,9 +147,7 @@ def _construct_vector(low: FunctionLowering, node: ast.Call, target: t.Vector, v
         value = values[0]
         if isinstance(value.type, t.Scalar):
             number = _element(value, target.element, low, node)
-            if isinstance(number, Literal):
-                return _literal_vector(result, [number] * result.size)
-            return Convert(number, result)
+            return convert(number, result, span)
         assert isinstance(value.type, t.Vector)
         if value.type.size > target.size:
             value = ComponentRef(value, tuple(range(target.size)), t.Vector(value.type.element, target.size))
@@ -166,15 +164,8 @@ def _construct_vector(low: FunctionLowering, node: ast.Call, target: t.Vector, v
             parts += [_element(component(kept, i), target.element, low, node) for i in range(value.type.size)]
         else:
             parts.append(_element(value, target.element, low, node))
-    literals = [part for part in parts if isinstance(part, Literal)]
-    if len(literals) == result.size:
-        return _literal_vector(result, literals)
-    return Construct(result, tuple(parts))
-
-
-def _literal_vector(vector: t.Vector, parts: list[Literal]) -> Literal:
-    values = [part.value for part in parts]
-    return Literal(tuple(value for value in values if not isinstance(value, tuple)), vector)
+    numbers = [number for part in parts if isinstance(part, Literal) for number in numbers_of(part)]
+    return Literal(tuple(numbers), result) if len(numbers) == result.size else Construct(result, tuple(parts))
 
 
 def _element(value: Expr, element: t.Scalar, low: FunctionLowering, node: ast.AST) -> Expr:

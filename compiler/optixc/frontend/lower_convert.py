@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from optixc.frontend.lower_block import literal
-from optixc.frontend.weak import widened
+from optixc.frontend.weak import ConstantValue, widened
 from optixc.ir import types as t
 from optixc.ir.nodes import Binary, BinaryOp, ComponentRef, Construct, Convert, Expr, Literal, LocalRef, TupleItem
 from optixc.source import Span
@@ -25,6 +25,10 @@ def convert(value: Expr, target: t.Type, span: Span) -> Expr:
         case t.Scalar(), t.Scalar() if isinstance(value, Literal) and not isinstance(value.value, tuple):
             if source.kind is not t.ScalarKind.FLOAT or target.kind is t.ScalarKind.FLOAT:
                 return literal(value.value, target)
+        case t.Scalar(), t.Vector(element=element, size=size) if isinstance(value, Literal):
+            one = convert(value, element, span)
+            if isinstance(one, Literal) and not isinstance(one.value, tuple):
+                return Literal((one.value,) * size, target)
     return Convert(value, target)
 
 
@@ -58,3 +62,8 @@ def component(vector: Expr, index: int) -> Expr:
 def is_simple(value: Expr) -> bool:
     """Whether writing the expression twice costs nothing."""
     return isinstance(value, Literal | LocalRef)
+
+
+def numbers_of(literal_: Literal) -> tuple[ConstantValue, ...]:
+    """The components of a literal vector, or the one number."""
+    return literal_.value if isinstance(literal_.value, tuple) else (literal_.value,)

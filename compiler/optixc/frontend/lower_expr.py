@@ -35,6 +35,7 @@ from optixc.ir.nodes import (
     FieldRef,
     If,
     IndexRef,
+    Literal,
     LocalRef,
     Logical,
     ParamsRef,
@@ -135,7 +136,7 @@ def lower_place(low: FunctionLowering, node: ast.expr, block: Block, keep_indice
             return ParamsRef(struct)
         case VectorUse(values=values):
             assert isinstance(info.type, t.Vector)
-            return Construct(info.type, tuple(literal(value, info.type.element) for value in values))
+            return Literal(values, info.type)
         case ConstantUse(symbol=symbol, body=body):
             return lower_expression(low.within(body), symbol.node, block)
         case ShapeUse():

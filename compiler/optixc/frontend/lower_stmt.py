@@ -7,6 +7,7 @@ from dataclasses import replace
 from functools import partial
 
 from optixc.frontend.check_print import print_parts
+from optixc.frontend.checked import LocalUse
 from optixc.frontend.lower_block import Block, FunctionLowering, is_stable, literal
 from optixc.frontend.lower_call import NOTHING, tuple_item
 from optixc.frontend.lower_convert import component, convert, is_simple, read
@@ -243,6 +244,9 @@ def _assign_pairs(low: FunctionLowering, targets: list[ast.expr], values: list[E
                 written.add(low.instance.bindings[name])
             elif isinstance(name, ast.Attribute | ast.Subscript):
                 writes_memory = True
+            elif isinstance(name, ast.Name) and isinstance(use := low.info(name).use, LocalUse):
+                # The root of a component or field.
+                written.add(use.local)
     for target, value in zip(targets, ready, strict=True):
         _assign_value(low, target, value, block)
 
