@@ -21,7 +21,7 @@ test: $(VENV)/ready-test
 	$(BIN)/cmake -S . -B build/runtime-tests -G Ninja -DCMAKE_MAKE_PROGRAM=$(abspath $(BIN)/ninja) -DOXRT_TESTS=ON > build/runtime-tests.log
 	$(BIN)/cmake --build build/runtime-tests -j $(JOBS)
 	$(BIN)/ctest --test-dir build/runtime-tests --output-on-failure
-	$(BIN)/python -m pytest -n $(JOBS) --dist loadfile
+	$(BIN)/python -m pytest -q -n $(JOBS) --dist loadfile
 
 bench: $(VENV)/ready-bench
 	$(BIN)/python -m benchmarks
