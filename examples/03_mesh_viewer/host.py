@@ -8,6 +8,7 @@ from pathlib import Path
 import meshes
 import numpy as np
 import shader
+from tqdm import tqdm
 
 import optixc as ox
 
@@ -44,8 +45,12 @@ def render(parts: list[meshes.Mesh], view: dict[str, np.ndarray], width: int, he
     )
     image = np.zeros((height, width, 4), np.float32)
     sun_direction = np.array([0.45, 0.8, 0.4]) / np.linalg.norm([0.45, 0.8, 0.4])
-    params = shader.Params(image=image, scene=scene, sun_direction=sun_direction, sun_color=(1.15, 1.08, 0.95), samples=samples, **view)
-    pipeline.launch(params, table, width=width, height=height)
+    params = shader.Params(
+        image=image, scene=scene, sun_direction=sun_direction, sun_color=(1.15, 1.08, 0.95), sample=0, samples=samples, **view
+    )
+    for sample in tqdm(range(samples), desc="mesh", unit="sample", delay=2.0, disable=None, leave=False):
+        params.sample = sample
+        pipeline.launch(params, table, width=width, height=height)
     return image
 
 

@@ -11,7 +11,7 @@ SHADOW_MISS = 1
 
 @ox.struct
 class Params:
-    """`samples` rays go through each pixel; the sun's direction points towards it."""
+    """A launch adds number `sample` of `samples` rays through each pixel; the sun's direction points towards it."""
 
     image: ox.Array2[float4]
     scene: ox.Traversable
@@ -21,6 +21,7 @@ class Params:
     w: float3
     sun_direction: float3
     sun_color: float3
+    sample: int
     samples: int
 
 
@@ -75,15 +76,12 @@ def sun_visibility(point: float3) -> float:
 @ox.program
 def __raygen__pinhole():
     i, size = ox.get_launch_index(), ox.get_launch_dimensions()
-    total = float3(0.0)
-    for sample in range(params.samples):
-        jitter = sobol_owen_2d(ox.uint32(sample), i.y * size.x + i.x)
-        x = 2.0 * (float(i.x) + jitter.x) / float(size.x) - 1.0
-        y = 1.0 - 2.0 * (float(i.y) + jitter.y) / float(size.y)
-        ray = Radiance(float3(0.0))
-        ox.trace(params.scene, params.eye, ox.normalize(x * params.u + y * params.v + params.w), payload=ray)
-        total += ray.color
-    params.image[i.y, i.x] = float4(total / float(params.samples), 1.0)
+    jitter = sobol_owen_2d(ox.uint32(params.sample), i.y * size.x + i.x)
+    x = 2.0 * (float(i.x) + jitter.x) / float(size.x) - 1.0
+    y = 1.0 - 2.0 * (float(i.y) + jitter.y) / float(size.y)
+    ray = Radiance(float3(0.0))
+    ox.trace(params.scene, params.eye, ox.normalize(x * params.u + y * params.v + params.w), payload=ray)
+    params.image[i.y, i.x] += float4(ray.color, 1.0) / float(params.samples)
 
 
 @ox.device

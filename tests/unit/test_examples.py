@@ -55,6 +55,18 @@ def test_every_example_is_complete(folder: str) -> None:
     assert f"]({folder})" in (EXAMPLES / "README.md").read_text()
 
 
+def test_the_first_shader_of_the_readme_runs(tmp_path: Path) -> None:
+    blocks = re.findall(r"```python\n(.*?)```", (EXAMPLES.parent / "README.md").read_text(), re.DOTALL)
+    for block in blocks:
+        (tmp_path / re.match(r"# (\w+\.py)", block)[1]).write_text(block)
+    done = subprocess.run([sys.executable, "host.py"], cwd=tmp_path, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr
+    picture = linear(tmp_path / "triangle.png")
+    assert (picture[20, 20] == 0.0).all()
+    # The centroid weighs all corners alike; a third of 255 steps after encoding
+    np.testing.assert_allclose(picture[512 - round(512 * 1.1 / 3), 256], 1.0 / 3.0, atol=0.01)
+
+
 def test_gradient(tmp_path: Path) -> None:
     run("01_gradient", "--size", 64, "--output", tmp_path / "a.exr")
     image = ox.read_image(tmp_path / "a.exr")
