@@ -6,6 +6,7 @@
 #ifndef OXRT_LANES_MEMORY_H
 #define OXRT_LANES_MEMORY_H
 
+#include <oxrt/lanes_quads.h>
 #include <oxrt/lanes_types.h>
 
 namespace oxrt {
@@ -93,6 +94,18 @@ OXRT_INLINE Vector<Wide<T, W>, 4> gatherFourBytes(const Places& places, int64_t 
     return result;
 }
 
+template <class T, class U, int W, class Places>
+OXRT_INLINE void loadPart(Lanes<U, W>& to, const Places& places, int64_t offset, Lanes<bool, W> mask) {
+    to = gather<T, W>(places, offset, mask);
+}
+template <class A, int W, class Places>
+OXRT_INLINE void loadPart(VaryingArray<A, W>& to, const Places& places, int64_t offset, Lanes<bool, W> mask) {
+    to.data = gather<uint64_t, W>(places, offset, mask);
+    for (int axis = 0; axis < int(sizeof(to.shape) / sizeof(to.shape[0])); ++axis)
+        to.shape[axis] = gather<uint64_t, W>(places, offset + 8 * (axis + 1), mask);
+    to.isShared = false;
+}
+
 /* The whole of a T from every place. `T` is the type in memory; each part of it is gathered from its own offset. */
 template <class T, int W, class Places> OXRT_INLINE Wide<T, W> loadFrom(const Places& places, Lanes<bool, W> mask) {
     if constexpr (isSame<T, uchar4> || isSame<T, char4>)
@@ -101,9 +114,8 @@ template <class T, int W, class Places> OXRT_INLINE Wide<T, W> loadFrom(const Pl
         Wide<T, W> result;
         T pattern; /* only the addresses of its parts are used */
         eachPart([&](auto& to, auto& part) {
-            using Part = PlainType<decltype(part)>;
-            using Stored = typename ChooseType<Scalar<Part>, Part, uint64_t>::Type;
-            to = gather<Stored, W>(places, reinterpret_cast<const char*>(&part) - reinterpret_cast<const char*>(&pattern), mask);
+            const int64_t offset = reinterpret_cast<const char*>(&part) - reinterpret_cast<const char*>(&pattern);
+            loadPart<PlainType<decltype(part)>>(to, places, offset, mask);
         }, result, pattern);
         return result;
     }
@@ -155,6 +167,8 @@ template <int W, class F, class T, int RANK, class... I> OXRT_INLINE auto withPl
 }
 template <int W, class F, class T, int RANK, class... I>
 OXRT_INLINE auto withPlaces(F f, const VaryingArray<Array<T, RANK>, W>& array, I... indices) {
+    if (array.isShared)
+        return withPlaces<W>(f, array.shared, indices...);
     return f(AddressPlaces<W>{array.data + longOffset<W>(array.shape, indices...) * uint64_t(sizeof(T))});
 }
 
@@ -168,12 +182,34 @@ template <int W, class A, class... I> OXRT_INLINE auto load(Lanes<bool, W> mask,
     return withPlaces<W>([mask](auto places) { return loadFrom<T, W>(places, mask); }, array, indices...);
 }
 
+/* Four floats to every place, as one store each; rows of four neighbours in one. */
+template <int W> OXRT_INLINE void storeFloat4(const WordPlaces<W>& places, Lanes<bool, W> mask, const Vector<Lanes<float, W>, 4>& value) {
+    const QuadRows<W> rows(value);
+    char* base = const_cast<char*>(places.base);
+    if (all(mask) && all(places.index == firstOfFour(places.index) + loadQuadSteps<W>())) {
+        for (int row = 0; row < W / 4; ++row)
+            rows.storeRow(base + 4 * int64_t(places.index[4 * row]), row);
+        return;
+    }
+    float quads[W][4];
+    rows.storeAll(&quads[0][0]);
+    eachLane(mask, [&](int lane) { __builtin_memcpy(base + 4 * int64_t(places.index[lane]), quads[lane], 16); });
+}
+
+/* The whole of a T to every place, lowest lane first. */
+template <class T, int W, class Places> OXRT_INLINE void storeTo(const Places& places, Lanes<bool, W> mask, const Wide<T, W>& value) {
+    eachLane(mask, [&](int lane) { extractLane(*reinterpret_cast<T*>(const_cast<char*>(places.address(lane))), value, lane); });
+}
+
 /* array[indices] = value in the lanes of the mask, lowest lane first. */
 template <int W, class A, class V, class... I> OXRT_INLINE void store(Lanes<bool, W> mask, const V& value, const A& array, I... indices) {
     using T = typename ArrayElement<A>::Type;
     const Wide<T, W> wide(value);
     withPlaces<W>([&](auto places) {
-        eachLane(mask, [&](int lane) { extractLane(*reinterpret_cast<T*>(const_cast<char*>(places.address(lane))), wide, lane); });
+        if constexpr (isSame<T, float4> && isSame<decltype(places), WordPlaces<W>>)
+            storeFloat4(places, mask, wide);
+        else
+            storeTo<T>(places, mask, wide);
     }, array, indices...);
 }
 

@@ -61,7 +61,7 @@ template <> struct Packet<16> {
 
 /* One trace of all lanes. Rays and hits stay in Embree's packet; what is derived from them is computed where it is read. */
 template <int W> struct RayLanes {
-    typename Packet<W>::RayHit packet;
+    typename Packet<W>::RayHit& packet; /* not a member: Embree sees its address, and nothing else of the ray */
     LanesThread<W>* thread;
     const OxrtTraversableView* root;
     Lanes<float, W> tmin, tmax;
@@ -76,6 +76,8 @@ template <int W> struct RayLanes {
     WordPlaces<W> records;                  /* else where each lane's record is */
     Lanes<uint32_t, W> kind;                /* of custom primitives */
     Lanes<uint32_t, W> attributes[8];
+
+    OXRT_INLINE explicit RayLanes(typename Packet<W>::RayHit& rays) : packet(rays) {}
 };
 
 template <int W> OXRT_INLINE Lanes<float, W> packetLanes(const float (&values)[W]) { return loadLanes<float, W>(values); }
@@ -171,7 +173,7 @@ template <int W> OXRT_INLINE Lanes<uint32_t, W> getInstanceIndex(const RayLanes<
     return select(inInstance(ray), packetLanes<W>(ray.packet.hit.instID[0]), 0u);
 }
 template <int W> OXRT_INLINE Lanes<uint32_t, W> getClusterId(const RayLanes<W>&) { return ~0u; }
-template <int W> OXRT_INLINE Lanes<uint32_t, W> getPrimitiveType(const RayLanes<W>& ray) {
+template <int W> OXRT_INLINE Lanes<uint32_t, W> geometryType(const RayLanes<W>& ray) {
     return OXRT_GEOMETRY_FIELD(uint32_t, ray, primitiveType);
 }
 
@@ -207,6 +209,7 @@ template <class F, int W> auto mapHits(const RayLanes<W>& ray, F f) {
     template <int W> auto name(const RayLanes<W>& ray) { return mapHits(ray, [](const Ray& one, int) { return name(one); }); }
 OXRT_MAPPED_GETTER(getGASTraversableHandle)
 OXRT_MAPPED_GETTER(getHitKind)
+OXRT_MAPPED_GETTER(getPrimitiveType)
 OXRT_MAPPED_GETTER(isTriangleHit)
 OXRT_MAPPED_GETTER(isTriangleFrontFaceHit)
 OXRT_MAPPED_GETTER(isTriangleBackFaceHit)
@@ -304,7 +307,7 @@ template <int W> OXRT_INLINE Lanes<uint32_t, W> attributeWord(const RayLanes<W>&
         builtin = floatAsUint(packetLanes<W>(ray.packet.hit.u));
     else if (index == 1)
         builtin = floatAsUint(packetLanes<W>(ray.packet.hit.v));
-    return select(getPrimitiveType(ray) == uint32_t(OXRT_PRIMITIVE_CUSTOM), ray.attributes[index], builtin);
+    return select(geometryType(ray) == uint32_t(OXRT_PRIMITIVE_CUSTOM), ray.attributes[index], builtin);
 }
 #define OXRT_LANES_ATTRIBUTE(index) \
     template <int W> OXRT_INLINE Lanes<uint32_t, W> getAttribute_##index(const RayLanes<W>& ray) { return attributeWord(ray, index); }

@@ -297,10 +297,11 @@ OXRT_INLINE void trace(LanesThread<W>& thread, Lanes<bool, W> mask, uint64_t han
     using Scalar = typename Programs::Scalar;
     if (none(mask) || !enterTrace<Scalar>(*thread.thread, place))
         return;
-    RayLanes<W> ray;
+    typename Packet<W>::RayHit rays;
+    RayLanes<W> ray(rays);
     ray.thread = &thread;
     ray.root = findTraversable(*thread.thread->launch, handle);
-    auto& packet = ray.packet.ray;
+    auto& packet = rays.ray;
     setPacket(packet.org_x, origin.x);
     setPacket(packet.org_y, origin.y);
     setPacket(packet.org_z, origin.z);

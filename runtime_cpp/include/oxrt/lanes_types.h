@@ -34,24 +34,22 @@ template <class T, int RANK, int W> struct WideType<Array<T, RANK>, W> { using T
 template <class... T, int W> struct WideType<Tuple<T...>, W> { using Type = Tuple<Wide<T, W>...>; };
 template <class T, int W> struct WideType<Word<T>, W> { using Type = Wide<T, W>; };
 
-/* Arrays that may be another one in every lane. */
+/* Arrays that may be another one in every lane. Where all lanes got theirs from one place, `shared` is it and `isShared` is set. */
 template <class T, int RANK, int W> struct VaryingArray<Array<T, RANK>, W> {
-    using IsWideStruct = void;
     Lanes<uint64_t, W> data;
     Lanes<uint64_t, W> shape[RANK];
-    template <class F, class... S> static OXRT_INLINE void each(const F& f, S&... arrays) {
-        f(arrays.data...);
-        for (int axis = 0; axis < RANK; ++axis)
-            f(arrays.shape[axis]...);
-    }
+    Array<T, RANK> shared;
+    bool isShared;
 };
+template <class T> inline constexpr bool isVaryingArray = false;
+template <class A, int W> inline constexpr bool isVaryingArray<VaryingArray<A, W>> = true;
 
 template <class T> struct PlainTypeOf { using Type = T; };
 template <class T> struct PlainTypeOf<T&> { using Type = T; };
 template <class T> struct PlainTypeOf<const T&> { using Type = T; };
 template <class T> using PlainType = typename PlainTypeOf<T>::Type;
 
-/* A struct that generated code made wide, or a varying array. */
+/* A struct that generated code made wide. */
 template <class T> concept WideStruct = requires { typename T::IsWideStruct; };
 template <class T> inline constexpr bool isTuple = false;
 template <class... T> inline constexpr bool isTuple<Tuple<T...>> = true;
@@ -98,10 +96,21 @@ template <class F, class First, class... Rest> OXRT_INLINE void eachPart(const F
 
 /* ---- assignment and choice under a mask --------------------------------------------------------------------------------------- */
 
+template <int W, class T> OXRT_INLINE void assignPart(Lanes<bool, W> mask, Lanes<T, W>& to, const Lanes<T, W>& from) {
+    to = select(mask, from, to);
+}
+template <int W, class T, int RANK>
+OXRT_INLINE void assignPart(Lanes<bool, W> mask, VaryingArray<Array<T, RANK>, W>& to, const VaryingArray<Array<T, RANK>, W>& from) {
+    to.data = select(mask, from.data, to.data);
+    for (int axis = 0; axis < RANK; ++axis)
+        to.shape[axis] = select(mask, from.shape[axis], to.shape[axis]);
+    to.isShared = false;
+}
+
 /* target = value in the lanes of the mask; a value that all lanes share is spread. */
 template <int W, class T> OXRT_INLINE void assign(Lanes<bool, W> mask, T& target, const T& value) {
     T copy = value;
-    eachPart([mask](auto& to, auto& from) { to = select(mask, from, to); }, target, copy);
+    eachPart([mask](auto& to, auto& from) { assignPart(mask, to, from); }, target, copy);
 }
 template <int W, class T, class U> requires(!isSame<T, U>) OXRT_INLINE void assign(Lanes<bool, W> mask, T& target, const U& value) {
     assign(mask, target, T(value));
@@ -114,35 +123,43 @@ template <int W, class T> requires(!Number<T> && vectorSize<T> == 0) OXRT_INLINE
 
 /* ---- single lanes ------------------------------------------------------------------------------------------------------------- */
 
-/* What a lane holds of a part whose own type is T: storage numbers are narrowed, pointers are held as addresses. */
-template <class T, class U> OXRT_INLINE void setPart(T& part, U value) {
-    if constexpr (Scalar<T>)
-        part = T(value);
-    else
-        part = reinterpret_cast<T>(value);
+template <class T, class U, int W> OXRT_INLINE void extractPart(T& to, const Lanes<U, W>& from, int lane) { to = T(from[lane]); }
+template <class T, int RANK, int W> OXRT_INLINE void extractPart(Array<T, RANK>& to, const VaryingArray<Array<T, RANK>, W>& from, int lane) {
+    to.data = reinterpret_cast<T*>(from.data[lane]);
+    for (int axis = 0; axis < RANK; ++axis)
+        to.shape[axis] = from.shape[axis][lane];
 }
-template <class T> OXRT_INLINE auto partOf(const T& part) {
-    if constexpr (Scalar<T>)
-        return part;
-    else
-        return reinterpret_cast<uint64_t>(part);
+template <class T, class U, int W> OXRT_INLINE void insertPart(Lanes<U, W>& to, const T& from, int lane) { to.set(lane, U(from)); }
+template <class T, int RANK, int W> OXRT_INLINE void insertPart(VaryingArray<Array<T, RANK>, W>& to, const Array<T, RANK>& from, int lane) {
+    to.data.set(lane, reinterpret_cast<uint64_t>(from.data));
+    for (int axis = 0; axis < RANK; ++axis)
+        to.shape[axis].set(lane, from.shape[axis]);
+    to.isShared = false;
+}
+template <class T, class U, int W> OXRT_INLINE void spreadPart(Lanes<U, W>& to, const T& from) { to = U(from); }
+template <class T, int RANK, int W> OXRT_INLINE void spreadPart(VaryingArray<Array<T, RANK>, W>& to, const Array<T, RANK>& from) {
+    to.data = reinterpret_cast<uint64_t>(from.data);
+    for (int axis = 0; axis < RANK; ++axis)
+        to.shape[axis] = from.shape[axis];
+    to.shared = from;
+    to.isShared = true;
 }
 
-/* `target`, of the type that V is the wide form of, becomes the value in one lane. */
+/* `target`, of the type that V is the wide form of, becomes the value in one lane; storage numbers are narrowed. */
 template <class T, class V> OXRT_INLINE void extractLane(T& target, const V& value, int lane) {
     V copy = value;
-    eachPart([lane](auto& from, auto& to) { setPart(to, from[lane]); }, copy, target);
+    eachPart([lane](auto& from, auto& to) { extractPart(to, from, lane); }, copy, target);
 }
 template <class T, class V> OXRT_INLINE void insertLane(V& target, const T& value, int lane) {
     T copy = value;
-    eachPart([lane](auto& to, auto& from) { to.set(lane, partOf(from)); }, target, copy);
+    eachPart([lane](auto& to, auto& from) { insertPart(to, from, lane); }, target, copy);
 }
 
 /* The value in all lanes. */
 template <int W, class T> OXRT_INLINE Wide<T, W> spread(const T& value) {
     Wide<T, W> result;
     T copy = value;
-    eachPart([](auto& to, auto& from) { to = ElementOf<PlainType<decltype(to)>>(partOf(from)); }, result, copy);
+    eachPart([](auto& to, auto& from) { spreadPart(to, from); }, result, copy);
     return result;
 }
 
