@@ -18,9 +18,7 @@ demo: $(VENV)/ready-examples
 test: $(VENV)/ready-test
 	$(BIN)/ruff check .
 	MYPYPATH=compiler $(BIN)/mypy --strict -p optixc
-	$(BIN)/cmake -S . -B build/runtime-tests -G Ninja -DCMAKE_MAKE_PROGRAM=$(abspath $(BIN)/ninja) -DOXRT_TESTS=ON > build/runtime-tests.log
-	$(BIN)/cmake --build build/runtime-tests -j $(JOBS)
-	$(BIN)/ctest --test-dir build/runtime-tests --output-on-failure
+	PYTHON=$(BIN)/python CMAKE=$(abspath $(BIN))/cmake tests/runtime/run.sh plain address thread
 	$(BIN)/python -m pytest -q -n $(JOBS) --dist loadfile
 
 bench: $(VENV)/ready-bench

@@ -6,6 +6,7 @@ starts a process. Live functions have no such key: they are checked and emitted 
 
 from __future__ import annotations
 
+import os
 import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -246,9 +247,15 @@ def _dependencies_key(key: str, dependencies: Sequence[str]) -> str | None:
 @cache
 def _compiler_stamp() -> str:
     """Changes with every change of this package's own files: version, names, sizes and times."""
-    root = Path(__file__).parent
-    files = [path for folder in ("", "frontend", "ir", "passes", "codegen") for path in sorted((root / folder).glob("*.py"))]
-    return digest(__version__, *(f"{path.relative_to(root)}:{path.stat().st_size}:{path.stat().st_mtime_ns}" for path in files))
+    root = os.path.dirname(__file__)
+    found = [__version__]
+    for folder in ("", "frontend", "ir", "passes", "codegen"):
+        with os.scandir(os.path.join(root, folder)) as entries:
+            for entry in sorted(entries, key=lambda entry: entry.name):
+                if entry.name.endswith(".py"):
+                    status = entry.stat()
+                    found.append(f"{folder}/{entry.name}:{status.st_size}:{status.st_mtime_ns}")
+    return digest("\n".join(found))
 
 
 @cache
