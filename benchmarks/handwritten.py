@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import importlib.util
+import os
 import re
 import shutil
 import subprocess
@@ -77,7 +78,9 @@ class Embree:
     def __init__(self, threads: int) -> None:
         self.ffi = cffi.FFI()
         self.ffi.cdef(re.sub(r"^#.*$", "", (KERNELS / "job.h").read_text(), flags=re.MULTILINE) + _SCENE_FUNCTIONS)
-        self.library: Any = self.ffi.dlopen(str(build("scene", compilers()[0])))
+        # never unloaded: threads of Embree may still run its code when Python ends
+        keep = self.ffi.RTLD_NOW | os.RTLD_NODELETE
+        self.library: Any = self.ffi.dlopen(str(build("scene", compilers()[0])), keep)
         self.device = self.library.bench_device_create(f"threads={threads}".encode())
 
     def pointer(self, array: NDArray[Any], type_name: str) -> Any:

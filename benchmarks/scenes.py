@@ -124,7 +124,7 @@ _MATTE_COLORS = [(0.8, 0.78, 0.74), (0.7, 0.35, 0.3), (0.35, 0.55, 0.7), (0.6, 0
 _PRINCIPLED = [(0.0, 0.6, 0.5, 0.0, 0.0), (0.0, 0.3, 0.5, 0.3, 1.0), (0.6, 0.25, 0.5, 0.0, 0.2), (0.2, 0.8, 0.4, 0.8, 0.0)]
 
 
-def mesh_scene(name: str, camera: int = 0) -> Scene:
+def mesh_scene(name: str, camera: int = 0, with_normals: bool = True) -> Scene:
     """A mesh with camera number `camera`, ambient-occlusion radius and light of benchmark_scenes.json."""
     folder = scenes_folder()
     table = folder / "benchmark_scenes.json"
@@ -153,7 +153,7 @@ def mesh_scene(name: str, camera: int = 0) -> Scene:
         noise_scale=40.0 / extent,
         vertices=vertices,
         triangles=triangles,
-        normals=vertex_normals(vertices, triangles),
+        normals=vertex_normals(vertices, triangles) if with_normals else np.zeros((0, 3), np.float32),
         material_of=(np.arange(len(triangles), dtype=np.uint32) // 64) % 4,
         colors=colors,
         surfaces=surfaces,

@@ -49,13 +49,13 @@ WORKLOADS = (
     Workload(
         "ambient_occlusion", "ambient occlusion, 16 rays", "ambient_occlusion",
         ("ambient_occlusion_scalar", "ambient_occlusion_scalar_ng"),
-        ("ambient_occlusion_packet", "ambient_occlusion_packet_ng", "ambient_occlusion_samples", "ambient_occlusion_single"),
+        ("ambient_occlusion_packet", "ambient_occlusion_packet_ng", "ambient_occlusion_coherent", "ambient_occlusion_adaptive", "ambient_occlusion_samples", "ambient_occlusion_single"),
         MESHES, 4,
         {"sibenik": 1.8, "sponza": 1.8, "dragon": 1.15}, {"sibenik": 2.2, "sponza": 2.2, "dragon": 1.3},
     ),
     Workload(
         "path", "diffuse path tracer, depth 8, next event estimation", "path",
-        ("path_scalar", "path_scalar_ng"), ("path_packet", "path_packet_ng", "path_shadow", "path_single"),
+        ("path_scalar", "path_scalar_ng"), ("path_packet", "path_packet_ng", "path_shadow", "path_adaptive", "path_single"),
         MESHES, 4,
         _all(MESHES, 1.15), _all(MESHES, 1.3),
     ),
@@ -68,7 +68,7 @@ WORKLOADS = (
     Workload(
         "whitted", "Whitted, custom spheres", "whitted",
         ("whitted_scalar",),
-        ("whitted_packet", "whitted_coherent", "whitted_all_coherent", "whitted_single", "whitted_single_shadow"),
+        ("whitted_packet", "whitted_coherent", "whitted_all_coherent", "whitted_adaptive", "whitted_single", "whitted_single_shadow"),
         ("spheres",), 1,
         {"spheres": 1.3}, {"spheres": 2.0},
     ),

@@ -127,4 +127,13 @@ extern "C" __attribute__((visibility("default"))) void ambient_occlusion_scalar_
 extern "C" __attribute__((visibility("default"))) void ambient_occlusion_packet(BenchJob* job) { bench::packet<NormalFrom::VERTICES, Form::PACKET>(*job); }
 extern "C" __attribute__((visibility("default"))) void ambient_occlusion_packet_ng(BenchJob* job) { bench::packet<NormalFrom::HIT, Form::PACKET>(*job); }
 extern "C" __attribute__((visibility("default"))) void ambient_occlusion_single(BenchJob* job) { bench::packet<NormalFrom::VERTICES, Form::SINGLE>(*job); }
+extern "C" __attribute__((visibility("default"))) void ambient_occlusion_coherent(BenchJob* job) { bench::packet<NormalFrom::VERTICES, Form::COHERENT>(*job); }
+extern "C" __attribute__((visibility("default"))) void ambient_occlusion_adaptive(BenchJob* job) { bench::packet<NormalFrom::VERTICES, Form::ADAPTIVE>(*job); }
 extern "C" __attribute__((visibility("default"))) void ambient_occlusion_samples(BenchJob* job) { bench::samples<NormalFrom::VERTICES>(*job); }
+
+#ifdef BENCH_RECORD
+#include "limit_runs.h"
+extern "C" __attribute__((visibility("default"))) int ambient_occlusion_limits(BenchJob* job, BenchLimit* results, int capacity) {
+    return bench::limits(*job, bench::scalar<NormalFrom::VERTICES>, bench::Callbacks(), results, capacity);
+}
+#endif

@@ -119,3 +119,11 @@ extern "C" __attribute__((visibility("default"))) void cutouts_coherent(BenchJob
 extern "C" __attribute__((visibility("default"))) void cutouts_plain(BenchJob* job) { bench::packet<NormalFrom::VERTICES, Form::PACKET, Form::PACKET>(*job); }
 extern "C" __attribute__((visibility("default"))) void cutouts_single(BenchJob* job) { bench::packet<NormalFrom::VERTICES, Form::SINGLE, Form::SINGLE>(*job); }
 extern "C" __attribute__((visibility("default"))) void cutouts_single_shadow(BenchJob* job) { bench::packet<NormalFrom::VERTICES, Form::COHERENT, Form::SINGLE>(*job); }
+
+#ifdef BENCH_RECORD
+#include "limit_runs.h"
+extern "C" __attribute__((visibility("default"))) int cutouts_limits(BenchJob* job, BenchLimit* results, int capacity) {
+    bench::Context context = bench::contextFor(*job);
+    return bench::limits(*job, bench::scalar<NormalFrom::VERTICES>, bench::callbacksOf(context), results, capacity);
+}
+#endif

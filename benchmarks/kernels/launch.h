@@ -8,6 +8,9 @@
 #include <vector>
 
 #include "algebra.h"
+#ifdef BENCH_RECORD
+#include "limit.h"
+#endif
 
 namespace bench {
 
@@ -54,8 +57,19 @@ BENCH_INLINE void writePixel(const BenchJob& job, uint32_t x, uint32_t y, Float3
 // Calls kernel(worker, x, y) for every pixel.
 template <class Kernel> void launchPixels(BenchJob& job, Kernel kernel) {
     launch(job, [&](Worker& worker, uint32_t x0, uint32_t y0, uint32_t x1, uint32_t y1) {
+#ifdef BENCH_RECORD
+        // in the order of packets
+        for (uint32_t by = y0; by < y1; by += BLOCK_HEIGHT)
+            for (uint32_t bx = x0; bx < x1; bx += 4)
+                for (uint32_t i = 0; i < LANES; i++) {
+                    const uint32_t x = bx + i % 4, y = by + i / 4;
+                    recorder().beginPixel();
+                    if (x < x1 && y < y1) kernel(worker, x, y);
+                }
+#else
         for (uint32_t y = y0; y < y1; y++)
             for (uint32_t x = x0; x < x1; x++) kernel(worker, x, y);
+#endif
     });
 }
 

@@ -238,6 +238,17 @@ extern "C" __attribute__((visibility("default"))) void path_packet(BenchJob* job
 extern "C" __attribute__((visibility("default"))) void path_packet_ng(BenchJob* job) { bench::packet<Surface::MATTE, NormalFrom::HIT, Form::PACKET, Form::PACKET>(*job); }
 extern "C" __attribute__((visibility("default"))) void path_shadow(BenchJob* job) { bench::packet<Surface::MATTE, NormalFrom::VERTICES, Form::PACKET, Form::COHERENT>(*job); }
 extern "C" __attribute__((visibility("default"))) void path_single(BenchJob* job) { bench::packet<Surface::MATTE, NormalFrom::VERTICES, Form::SINGLE, Form::PACKET>(*job); }
+extern "C" __attribute__((visibility("default"))) void path_adaptive(BenchJob* job) { bench::packet<Surface::MATTE, NormalFrom::VERTICES, Form::ADAPTIVE, Form::ADAPTIVE>(*job); }
 extern "C" __attribute__((visibility("default"))) void heavy_scalar(BenchJob* job) { bench::scalar<Surface::PRINCIPLED, NormalFrom::VERTICES>(*job); }
 extern "C" __attribute__((visibility("default"))) void heavy_packet(BenchJob* job) { bench::packet<Surface::PRINCIPLED, NormalFrom::VERTICES, Form::PACKET, Form::PACKET>(*job); }
 extern "C" __attribute__((visibility("default"))) void heavy_single(BenchJob* job) { bench::packet<Surface::PRINCIPLED, NormalFrom::VERTICES, Form::SINGLE, Form::PACKET>(*job); }
+
+#ifdef BENCH_RECORD
+#include "limit_runs.h"
+extern "C" __attribute__((visibility("default"))) int path_limits(BenchJob* job, BenchLimit* results, int capacity) {
+    return bench::limits(*job, bench::scalar<Surface::MATTE, NormalFrom::VERTICES>, bench::Callbacks(), results, capacity);
+}
+extern "C" __attribute__((visibility("default"))) int heavy_limits(BenchJob* job, BenchLimit* results, int capacity) {
+    return bench::limits(*job, bench::scalar<Surface::PRINCIPLED, NormalFrom::VERTICES>, bench::Callbacks(), results, capacity);
+}
+#endif

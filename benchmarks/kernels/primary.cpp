@@ -46,3 +46,10 @@ template <Form form> void packet(BenchJob& job) {
 extern "C" __attribute__((visibility("default"))) void primary_scalar(BenchJob* job) { bench::scalar(*job); }
 extern "C" __attribute__((visibility("default"))) void primary_coherent(BenchJob* job) { bench::packet<bench::Form::COHERENT>(*job); }
 extern "C" __attribute__((visibility("default"))) void primary_packet(BenchJob* job) { bench::packet<bench::Form::PACKET>(*job); }
+
+#ifdef BENCH_RECORD
+#include "limit_runs.h"
+extern "C" __attribute__((visibility("default"))) int primary_limits(BenchJob* job, BenchLimit* results, int capacity) {
+    return bench::limits(*job, bench::scalar, bench::Callbacks(), results, capacity);
+}
+#endif

@@ -5,6 +5,9 @@
 #include <oxrt/embree.h>
 
 #include "algebra.h"
+#ifdef BENCH_RECORD
+#include "limit.h"
+#endif
 
 namespace bench {
 
@@ -68,6 +71,9 @@ BENCH_INLINE bool intersect(const BenchJob& job, RTCRayHit& hit, Float3 origin, 
     setRay(hit.ray, origin, direction, 1e16f);
     hit.hit.geomID = RTC_INVALID_GEOMETRY_ID;
     hit.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+#ifdef BENCH_RECORD
+    recorder().seek({origin, direction, 1e16f});
+#endif
     rtcIntersect1(sceneOf(job), &hit, arguments);
     return hit.hit.geomID != RTC_INVALID_GEOMETRY_ID;
 }
@@ -75,14 +81,29 @@ BENCH_INLINE bool intersect(const BenchJob& job, RTCRayHit& hit, Float3 origin, 
 BENCH_INLINE bool occluded(const BenchJob& job, Float3 origin, Float3 direction, float tfar, RTCOccludedArguments* arguments = nullptr) {
     RTCRay ray;
     setRay(ray, origin, direction, tfar);
+#ifdef BENCH_RECORD
+    recorder().shadow({origin, direction, tfar});
+#endif
     rtcOccluded1(sceneOf(job), &ray, arguments);
     return ray.tfar < 0.0f;
 }
 
 // ---- packets
 
-// How the rays of a packet are traced: together along one path, together, or one by one.
-enum class Form { COHERENT, PACKET, SINGLE };
+// How the rays of a packet are traced: together along one path, together, one by one, or as the first where the rays' directions are
+// alike and as the second where not.
+enum class Form { COHERENT, PACKET, SINGLE, ADAPTIVE };
+
+// Directions of one octant that lie close together: the rays visit much the same nodes.
+BENCH_INLINE bool alike(Mask active, Wide3 direction) {
+    const Wide zero(0.0f);
+    const unsigned bits = bitsOf(active);
+    const auto mixed = [&](Wide v) {
+        const unsigned negative = bitsOf(active & (v < zero));
+        return negative != 0 && negative != bits;
+    };
+    return !mixed(direction.x) && !mixed(direction.y) && !mixed(direction.z);
+}
 
 BENCH_INLINE void setRays(PacketRay& ray, Wide3 origin, Wide3 direction, Wide tfar) {
     store(ray.org_x, origin.x);
@@ -162,7 +183,7 @@ BENCH_INLINE PacketResult intersect(const BenchJob& job, Form form, Mask active,
     if (form == Form::SINGLE) {
         intersectLanes(sceneOf(job), packet, active, &arguments);
     } else {
-        if (form == Form::COHERENT) arguments.flags |= RTC_RAY_QUERY_FLAG_COHERENT;
+        if (form == Form::COHERENT || (form == Form::ADAPTIVE && alike(active, direction))) arguments.flags |= RTC_RAY_QUERY_FLAG_COHERENT;
         storeMask(valid, active);
         intersectN(valid, sceneOf(job), &packet, &arguments);
     }
@@ -180,7 +201,7 @@ BENCH_INLINE Mask unoccluded(const BenchJob& job, Form form, Mask active, Wide3 
     if (form == Form::SINGLE) {
         occludedLanes(sceneOf(job), packet, active, &arguments);
     } else {
-        if (form == Form::COHERENT) arguments.flags |= RTC_RAY_QUERY_FLAG_COHERENT;
+        if (form == Form::COHERENT || (form == Form::ADAPTIVE && alike(active, direction))) arguments.flags |= RTC_RAY_QUERY_FLAG_COHERENT;
         storeMask(valid, active);
         occludedN(valid, sceneOf(job), &packet, &arguments);
     }

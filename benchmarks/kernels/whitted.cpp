@@ -311,4 +311,14 @@ extern "C" __attribute__((visibility("default"))) void whitted_packet(BenchJob* 
 extern "C" __attribute__((visibility("default"))) void whitted_coherent(BenchJob* job) { bench::packet<Form::PACKET, Form::COHERENT>(*job); }
 extern "C" __attribute__((visibility("default"))) void whitted_all_coherent(BenchJob* job) { bench::packet<Form::COHERENT, Form::COHERENT>(*job); }
 extern "C" __attribute__((visibility("default"))) void whitted_single(BenchJob* job) { bench::packet<Form::SINGLE, Form::SINGLE>(*job); }
+extern "C" __attribute__((visibility("default"))) void whitted_adaptive(BenchJob* job) { bench::packet<Form::ADAPTIVE, Form::ADAPTIVE>(*job); }
 extern "C" __attribute__((visibility("default"))) void whitted_single_shadow(BenchJob* job) { bench::packet<Form::PACKET, Form::SINGLE>(*job); }
+
+#ifdef BENCH_RECORD
+#include "limit_runs.h"
+extern "C" __attribute__((visibility("default"))) int whitted_limits(BenchJob* job, BenchLimit* results, int capacity) {
+    alignas(64) float attenuation[bench::LANES] = {};
+    bench::Context context = bench::contextFor(*job, attenuation);
+    return bench::limits(*job, bench::scalar, bench::callbacksOf(context), results, capacity);
+}
+#endif

@@ -1,0 +1,84 @@
+"""Peak memory of ambient occlusion of the dragon: ours in Python, the hand-written program, and Python with the same imports alone."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+import tempfile
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
+
+import optixc as ox
+from benchmarks.handwritten import BUILD, FLAGS, INCLUDE, KERNELS, ROOT, Embree, EmbreeScene, compilers, embree_library, make_job
+from benchmarks.ours import ours
+from benchmarks.scenes import mesh_scene
+from benchmarks.workloads import WORKLOADS, Workload
+
+ALLOWED = 1.3
+_PEAK = "import resource; print(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss)"
+_IMPORTS = "import sys; sys.path.insert(0, sys.argv[1])\nimport benchmarks.memory\n"
+_RENDER = "benchmarks.memory.render_ours(int(sys.argv[2]))\n"
+
+
+@dataclass
+class PeakMemory:
+    """MiB at most resident. `allowed` is 1.3 times the hand-written program plus the bare interpreter."""
+
+    threads: int
+    ours: float
+    hand_written: float
+    interpreter: float
+
+    @property
+    def allowed(self) -> float:
+        """What the project asks for."""
+        return ALLOWED * self.hand_written + self.interpreter
+
+
+def _workload() -> Workload:
+    """Ambient occlusion of the whole image."""
+    return replace(next(one for one in WORKLOADS if one.name == "ambient_occlusion"), share=1)
+
+
+def render_ours(threads: int) -> None:
+    """What the measured process does."""
+    context = ox.DeviceContext(threads=threads)
+    ours(context, mesh_scene("dragon", with_normals=False), _workload(), lanes=1).run()
+
+
+def _python(code: str, threads: int) -> float:
+    command = [sys.executable, "-c", _IMPORTS + code + _PEAK, str(ROOT), str(threads)]
+    answer = subprocess.run(command, capture_output=True, text=True, check=True)
+    return int(answer.stdout.split()[-1]) / 1024
+
+
+def _program() -> Path:
+    program = BUILD / "dragon_demo"
+    sources = [str(KERNELS / f"{name}.cpp") for name in ("dragon_demo", "ambient_occlusion", "scene")]
+    flags = [flag for flag in FLAGS if flag not in ("-shared", "-fPIC")]
+    embree = embree_library()
+    BUILD.mkdir(parents=True, exist_ok=True)
+    command = [compilers()[0], *flags, f"-I{INCLUDE}", *sources, "-o", str(program), str(embree), f"-Wl,-rpath,{embree.parent}", "-pthread"]
+    subprocess.run(command, check=True)
+    return program
+
+
+def _hand_written(threads: int) -> float:
+    scene = mesh_scene("dragon", with_normals=False)
+    embree = Embree(threads)
+    image = np.zeros((1, 1, 4), np.float32)
+    job = make_job(embree, EmbreeScene(embree, scene, with_light=False), _workload(), threads, image)
+    with tempfile.TemporaryDirectory() as folder:
+        files = [Path(folder) / name for name in ("vertices", "triangles", "job")]
+        scene.vertices.tofile(files[0])
+        scene.triangles.tofile(files[1])
+        files[2].write_bytes(bytes(embree.ffi.buffer(job)))
+        command = [str(_program()), *map(str, files), f"threads={threads}"]
+        return int(subprocess.run(command, capture_output=True, text=True, check=True).stdout) / 1024
+
+
+def measure(threads: int) -> PeakMemory:
+    """Three processes, one after the other; raises SceneMissing without the dragon."""
+    return PeakMemory(threads, _python(_RENDER, threads), _hand_written(threads), _python("", threads))
