@@ -9,6 +9,8 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import dataclass
 
+from optixc.enums_program import Result
+from optixc.errors import OptixError
 from optixc.source import Span
 
 CODES: dict[str, str] = {
@@ -106,8 +108,10 @@ class Diagnostic:
         return [f"{self.span.line:5d} | {text}", f"      | {carets} {self.note}".rstrip()]
 
 
-class CompileError(Exception):
+class CompileError(OptixError):
     """A shader has errors; `diagnostics` holds all that were found, in the order of their places."""
+
+    code = Result.ERROR_INVALID_INPUT
 
     def __init__(self, diagnostics: Iterable[Diagnostic]) -> None:
         self.diagnostics = tuple(diagnostics)
