@@ -29,6 +29,7 @@ public:
     void recordFault(const OxrtThread& thread, std::int32_t code, const char* path, std::uint32_t line, const char* message,
                      const double* values, std::uint32_t valueCount);
 
+    const OxrtLaunch& description() const { return view; }
     std::uint64_t indicesDone() const { return done.load(std::memory_order_relaxed); }
     std::uint64_t indexCount() const { return total.load(std::memory_order_relaxed); }
     bool cancelled() const { return wasCancelled.load(std::memory_order_relaxed); }

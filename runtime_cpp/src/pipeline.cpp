@@ -126,6 +126,15 @@ OxrtLaunch Pipeline::describeLaunch(const OxrtShaderBindingTable& sbt, LaunchSiz
     return description;
 }
 
+std::unique_ptr<Launch> Pipeline::makeLaunch(const void* params, std::size_t paramsSize, const OxrtShaderBindingTable* sbt,
+                                             LaunchSize size) const
+{
+    const OxrtProgram& raygen = checkLaunch(params, paramsSize, sbt, size);
+    auto made = std::make_unique<Launch>(binary->paramsSize);
+    made->prepare(*context, describeLaunch(*sbt, size), raygen, params);
+    return made;
+}
+
 std::uint64_t Pipeline::prepareLaunch(const void* params, std::size_t paramsSize, const OxrtShaderBindingTable* sbt, LaunchSize size)
 {
     const OxrtProgram& raygen = checkLaunch(params, paramsSize, sbt, size);

@@ -40,6 +40,9 @@ public:
     void finishLaunch() noexcept;
     void cancelLaunch();
 
+    // A launch that nobody runs: what an interpreter's programs see of it.
+    std::unique_ptr<Launch> makeLaunch(const void* params, std::size_t paramsSize, const OxrtShaderBindingTable* sbt, LaunchSize size) const;
+
     OxrtLaunchReport lastReport() const;
     void progress(std::uint64_t& done, std::uint64_t& total) const;
 

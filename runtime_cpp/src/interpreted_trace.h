@@ -1,0 +1,23 @@
+// The device library as an interpreter uses it: traces whose programs are callbacks. Apart from the runtime's own headers, because the
+// device library has types of the same names.
+#pragma once
+
+#include "oxrt/interpret.h"
+#include "oxrt/pipeline.h"
+
+namespace oxrt {
+
+// What a thread of device code is, with whom to call for programs behind it.
+struct InterpretedThread {
+    OxrtThread thread; // first: device code hands out its address
+    OxrtProgramCallback callback;
+    void* data;
+};
+
+void traceInterpreted(InterpretedThread& owner, const OxrtRayArguments& arguments, uint32_t* payload);
+void* newHitObject();
+void freeHitObject(void* object);
+void traverseInterpreted(InterpretedThread& owner, void* object, const OxrtRayArguments& arguments, uint32_t* payload);
+void invokeInterpreted(InterpretedThread& owner, void* object, uint32_t* payload);
+
+} // namespace oxrt
