@@ -48,3 +48,24 @@ def __raygen__a():
     m = ox.FixedArray[float, 3]()
     n = m  # E[OX308]: write ox.copy(m)
     o = same(a)
+
+
+def pair(inner: Inner):
+    a = Inner(1.0)
+    b = Inner(2.0)
+    return (a, b) if a.x > inner.x else (b, a)
+
+
+def twice_the_same():
+    a = Inner(1.0)
+    return a, a  # E[OX308]: the result would be a second name of the Inner `a`
+
+
+@ox.program
+def __miss__a():
+    x, y = pair(params.inner)
+    z, w = twice_the_same()
+    v = 1.0
+    v(2.0)  # E[OX319]: `v` is a local here
+    params.inner(1)  # E[OX319]: Inner is not a function
+    (1 + 2)(3)  # E[OX319]: an int literal is not a function

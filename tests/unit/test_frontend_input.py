@@ -87,7 +87,7 @@ def test_bom_and_encodings(tmp_path: Path) -> None:
     shader.write_bytes(b"# -*- coding: latin-1 -*-\n# \xe4\n" + (HEAD + "    x = 1\n").encode())
     assert compile_file(shader).module.programs[0].name == "__raygen__a"
     shader.write_bytes(b"# \xff\xfe\n")
-    with pytest.raises(CompileError, match="OX101.*decoded"):
+    with pytest.raises(CompileError, match=r"OX101.*decoded"):
         compile_file(shader)
 
 

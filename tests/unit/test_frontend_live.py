@@ -97,7 +97,7 @@ def test_host_value_is_told_at_its_use() -> None:
 
     @ox.program
     def __raygen__uses_dict():
-        x = table["a"]
+        print(table["a"])
 
     with pytest.raises(CompileError) as caught:
         compile_functions([__raygen__uses_dict])

@@ -69,7 +69,6 @@ def _not_callable(c: Context, node: ast.Call) -> ExprInfo:
             if note is not None or name in _PYTHON_BUILTINS:
                 message = f"Python's built-in `{name}` is not part of restricted Python"
                 return c.error("OX406", node.func, message, f"use {note}" if note else _PYTHON_BUILTINS[name])
-            return c.check(node.func)
         case ast.Attribute(value=base, attr=name) if static_symbol(c, base) is None:
             info = c.check(base)
             if isinstance(info.type, Invalid):
@@ -77,7 +76,8 @@ def _not_callable(c: Context, node: ast.Call) -> ExprInfo:
             text = ast.unparse(base)
             note = f"write ox.{name}({text})" if name in INTRINSICS else "call a helper function with it"
             return c.error("OX319", node.func, f"{describe(info.type)} has no methods", note)
-    return c.check(node.func)
+    info = c.check(node.func)
+    return info if isinstance(info.type, Invalid) else c.error("OX319", node.func, f"{describe(info.type)} is not a function", "")
 
 
 _PYTHON_BUILTINS = {

@@ -206,10 +206,12 @@ def _check_word(
 ) -> None:
     """get_payload_i and set_payload_i address the same words: they must exist and obey the same semantics."""
     name, _, index = requirement.what.removesuffix("()").rpartition("_")
-    if name not in ("get_payload", "set_payload"):
+    if name not in ("get_payload", "set_payload") or not index.isdigit():
         return
     first = 0
     for field in struct.fields:
+        if isinstance(field.type, t.Void):
+            return
         words = payload_words(field.type)
         if first <= int(index) < first + words:
             access = PayloadAccess(field.name, name == "set_payload", requirement.span)

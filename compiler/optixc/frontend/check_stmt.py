@@ -12,7 +12,7 @@ from optixc.frontend.check_loops import check_for, check_while
 from optixc.frontend.check_match import check_match
 from optixc.frontend.check_operators import check_condition
 from optixc.frontend.check_print import check_print, message_of
-from optixc.frontend.checked import IntrinsicUse, ReportUse
+from optixc.frontend.checked import IntrinsicUse, ReportUse, returned_value
 from optixc.frontend.context import Context
 from optixc.frontend.environment import Way, join
 from optixc.frontend.refusals import refuse_statement
@@ -102,11 +102,12 @@ def _otherwise(node: ast.If) -> str:
 def _check_return(c: Context, node: ast.Return) -> bool:
     c.returns.append(node)
     kind = c.instance.kind
-    if node.value is not None and kind is not None and kind not in (ProgramKind.DIRECT_CALLABLE, ProgramKind.CONTINUATION_CALLABLE):
-        c.check(node.value)
+    value = returned_value(node)
+    if value is not None and kind is not None and kind not in (ProgramKind.DIRECT_CALLABLE, ProgramKind.CONTINUATION_CALLABLE):
+        c.check(value)
         c.error("OX316", node, f"a {kind.value} program returns no value", "write to the payload, or to an array")
-    elif node.value is not None:
-        c.check(node.value)
+    elif value is not None:
+        c.check(value)
     return False
 
 

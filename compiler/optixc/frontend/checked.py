@@ -326,6 +326,13 @@ class FunctionInstance:
         return [local for by_type in self.locals.values() for local in by_type.values()]
 
 
+def returned_value(node: ast.Return) -> ast.expr | None:
+    """The expression that a return statement gives; `return None` gives nothing, like `return`."""
+    if isinstance(node.value, ast.Constant) and node.value.value is None:
+        return None
+    return node.value
+
+
 @dataclass(eq=False)
 class Checked:
     """A checked compilation: programs in order of definition, helper instances in order of first completion."""

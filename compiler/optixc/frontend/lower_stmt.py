@@ -7,7 +7,7 @@ from dataclasses import replace
 from functools import partial
 
 from optixc.frontend.check_print import print_parts
-from optixc.frontend.checked import LocalUse
+from optixc.frontend.checked import LocalUse, returned_value
 from optixc.frontend.lower_block import Block, FunctionLowering, is_stable, literal
 from optixc.frontend.lower_call import NOTHING, tuple_item
 from optixc.frontend.lower_convert import component, convert, is_simple, read
@@ -86,8 +86,8 @@ def _lower_statement(low: FunctionLowering, node: ast.stmt, block: Block) -> Non
             block.emit(Break(span))
         case ast.Continue():
             block.emit(Continue(span))
-        case ast.Return(value=value):
-            _lower_return(low, node, value, block)
+        case ast.Return():
+            _lower_return(low, node, returned_value(node), block)
         case ast.Assert(test=test, msg=message):
             condition = lower_expression(low, test, block)
             text = message.value if isinstance(message, ast.Constant) and isinstance(message.value, str) else ""
