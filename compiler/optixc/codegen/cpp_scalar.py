@@ -52,7 +52,7 @@ class ScalarFunction:
         self._options = options
         self._names = signatures.inner_names(function)
         self._expressions = Expressions(ScalarDialect(types, signatures, self._names, options))
-        self._declarations = declarations(function)
+        self._declarations = declarations(function, splits_loops=True)
         self._calls = ScalarCalls(function, self._names, self._expressions, signatures, types, options)
 
     def write(self) -> None:

@@ -32,8 +32,8 @@ def assigned_local(statement: Stmt) -> Local | None:
             return None
 
 
-def declarations(function: Function) -> Declarations:
-    """Decides for every local of a function."""
+def declarations(function: Function, splits_loops: bool = False) -> Declarations:
+    """Decides for every local of a function. With `splits_loops`, several loops that count with one local declare it each."""
     result = Declarations()
     read = _read_names(function.body)
     for local in function.locals:
@@ -41,7 +41,7 @@ def declarations(function: Function) -> Declarations:
             continue
         if local.name not in read:
             result.unread.add(local.name)
-        declaring = _declaring_statements(function.body, local.name)
+        declaring = _declaring_statements(function.body, local.name, splits_loops)
         if not declaring:
             result.at_top.append(local)
         for statement in declaring:
@@ -100,11 +100,11 @@ def _is_mentioned(body: Body, name: str) -> bool:
     return any(_mentions(statement, name) for statement in body)
 
 
-def _declaring_statements(body: Body, name: str) -> list[Stmt]:
+def _declaring_statements(body: Body, name: str, splits_loops: bool) -> list[Stmt]:
     """The statements that can declare the local: the first mention in the innermost block that holds all of them, or every loop that
     counts with it if nothing else mentions it there."""
     mentioning = [statement for statement in body if _mentions(statement, name)]
-    if all(_counts_alone(statement, name) for statement in mentioning):
+    if (splits_loops or len(mentioning) == 1) and all(_counts_alone(statement, name) for statement in mentioning):
         return mentioning
     first = mentioning[0]
     target = assigned_local(first)
@@ -115,7 +115,7 @@ def _declaring_statements(body: Body, name: str) -> list[Stmt]:
     holders = [block for block in _inner_blocks(first) if _is_mentioned(block, name)]
     if len(holders) != 1 or (_mentions_itself(first, name) and not _is_inside_loop(first, name)):
         return []
-    return _declaring_statements(holders[0], name)
+    return _declaring_statements(holders[0], name, splits_loops)
 
 
 def _counts_alone(statement: Stmt, name: str) -> bool:

@@ -50,7 +50,7 @@ struct Ray {
     const OxrtRecordHeader* record;
     uint32_t recordIndex;
     uint32_t kind; /* of custom primitives, as reported */
-    uint32_t attributes[8];
+    const uint32_t* attributes; /* of custom primitives, as reported */
 
     /* while callbacks run */
     Verdict verdict;
@@ -60,9 +60,24 @@ struct Ray {
     const RTCRay* objectRay;
     RTCHit* embreeHit; /* null in occlusion queries */
     RTCRay* embreeRay;
+    uint32_t embreeGeometry;
+    bool runsAnyHit;
     uint32_t committedKind;
     uint32_t committedAttributes[8];
+    uint32_t candidateAttributes[8];
 };
+
+/* The neighbours of a float. Embree's intervals are closed, OptiX's open for built-in primitives. Next to zero stands the smallest normal
+   number: Embree multiplies with both ends, and denormal operands would cost more than the rest of a short traversal. */
+OXRT_INLINE constexpr float nextUp(float x) {
+    if (!(x < __builtin_inff()))
+        return x;
+    if (__builtin_fabsf(x) < __FLT_MIN__)
+        return __FLT_MIN__;
+    const uint32_t bits = __builtin_bit_cast(uint32_t, x);
+    return __builtin_bit_cast(float, x > 0.0f ? bits + 1 : bits - 1);
+}
+OXRT_INLINE constexpr float nextDown(float x) { return -nextUp(-x); }
 
 /* ---- payload -------------------------------------------------------------------------------------------------------------------- */
 
@@ -240,12 +255,10 @@ OXRT_INLINE uint32_t getAttribute_5(const Ray& ray) { return attributeWord(ray, 
 OXRT_INLINE uint32_t getAttribute_6(const Ray& ray) { return attributeWord(ray, 6); }
 OXRT_INLINE uint32_t getAttribute_7(const Ray& ray) { return attributeWord(ray, 7); }
 template <class Attributes> OXRT_INLINE Attributes getAttributes(const Ray& ray) {
-    static_assert(sizeof(Attributes) <= sizeof(ray.attributes));
-    uint32_t words[8];
-    for (int i = 0; i < int(sizeof(Attributes) / 4); ++i)
-        words[i] = attributeWord(ray, i);
+    static_assert(sizeof(Attributes) <= sizeof(ray.committedAttributes));
+    const uint32_t builtin[8] = {floatAsUint(ray.u), floatAsUint(ray.v)};
     Attributes result;
-    __builtin_memcpy(&result, words, sizeof(Attributes));
+    __builtin_memcpy(&result, isCustomGeometry(ray) ? ray.attributes : builtin, sizeof(Attributes));
     return result;
 }
 

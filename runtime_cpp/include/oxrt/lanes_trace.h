@@ -19,87 +19,9 @@ struct NoLanePrograms {
     using Payload = NoPayload;
 };
 
-/* ---- faults ------------------------------------------------------------------------------------------------------------------- */
-
-/* A fault of the lowest lane of the mask, if there is one. */
-template <int W>
-__attribute__((noinline, cold)) void fault(LanesThread<W>& thread, Lanes<bool, W> mask, int32_t code, const char* message, Place place) {
-    if (any(mask))
-        fault(thread.atLane(firstLane(mask)), code, message, place);
-}
-
-/* ---- records ------------------------------------------------------------------------------------------------------------------ */
-
-/* Enters where the records with these indices are, and gives the lanes that have one which this pipeline may run. */
-template <int W>
-OXRT_INLINE Lanes<bool, W> enterRecords(RayLanes<W>& ray, Lanes<bool, W> mask, const uint8_t* section, uint32_t stride, uint32_t count,
-                                        Lanes<uint32_t, W> index) {
-    const OxrtLaunch& launch = *ray.thread->thread->launch;
-    const uint32_t first = index[firstLane(mask)];
-    if (none(mask & (index != first))) {
-        ray.commonRecord = findRecord(launch, section, stride, count, first);
-        return ray.commonRecord ? mask : Lanes<bool, W>(false);
-    }
-    ray.commonRecord = nullptr;
-    ray.records = {reinterpret_cast<const char*>(section), bitCast<int32_t>(index * (stride / 4))};
-    const Lanes<bool, W> present = mask & (index < count);
-    return present & (gather<uint32_t, W>(ray.records, OXRT_FIELD_OFFSET(OxrtRecordHeader, pipelineUid), present) == launch.pipelineUid);
-}
-
-/* The number of the program in `slot` of each lane's record. */
-template <int W> OXRT_INLINE Lanes<int32_t, W> recordPrograms(const RayLanes<W>& ray, Lanes<bool, W> mask, int slot) {
-    if (ray.commonRecord)
-        return ray.commonRecord->programs[slot];
-    return gather<int32_t, W>(ray.records, OXRT_FIELD_OFFSET(OxrtRecordHeader, programs) + 4 * slot, mask);
-}
-
-/* The data of each lane's record. */
-template <class Record, int W> OXRT_INLINE Wide<Record, W> loadRecord(const RayLanes<W>& ray, Lanes<bool, W> mask) {
-    if (ray.commonRecord)
-        return spread<W>(recordData<Record>(*ray.commonRecord));
-    return loadFrom<Record, W>(WordPlaces<W>{ray.records.base + sizeof(OxrtRecordHeader), ray.records.index}, mask);
-}
-
-/* Makes the lanes of `hit` the active ones; notes whether they hit one geometry. */
-template <int W> OXRT_INLINE void enterHits(RayLanes<W>& ray, Lanes<bool, W> hit) {
-    ray.active = hit;
-    const int lane = firstLane(hit);
-    const auto& packet = ray.packet.hit;
-    ray.commonInstance = nullptr;
-    ray.commonGeometry = nullptr;
-    const uint32_t geometry = packet.geomID[lane];
-    const bool hasInstances = ray.root->instances;
-    if (!hasInstances && ray.root->geometryCount == 1)
-        ray.commonGeometry = ray.root->geometries;
-    else if (none(hit & (packetLanes<W>(packet.geomID) != geometry))) {
-        const uint32_t instance = hasInstances ? packet.instID[0][lane] : RTC_INVALID_GEOMETRY_ID;
-        if (instance == RTC_INVALID_GEOMETRY_ID && !hasInstances)
-            ray.commonGeometry = ray.root->geometries + geometry;
-        else if (none(hit & (packetLanes<W>(packet.instID[0]) != instance)) && instance != RTC_INVALID_GEOMETRY_ID) {
-            ray.commonInstance = ray.root->instances + instance;
-            ray.commonGeometry = ray.commonInstance->child->geometries + geometry;
-        }
-    }
-}
-
-/* The lanes whose hit has a record. */
-template <int W> OXRT_INLINE Lanes<bool, W> enterHitRecords(RayLanes<W>& ray) {
-    const OxrtLaunch& launch = *ray.thread->thread->launch;
-    const Lanes<uint32_t, W> offset = instanceField<uint32_t>(ray, OXRT_FIELD_OFFSET(OxrtInstanceView, sbtOffset), 0u);
-    const Lanes<uint32_t, W> index = offset + getSbtGASIndex(ray) * ray.sbtStride + ray.sbtOffset;
-    return enterRecords(ray, ray.active, launch.hitgroupRecords, launch.hitgroupStride, launch.hitgroupCount, index);
-}
-
 /* ---- queries ------------------------------------------------------------------------------------------------------------------ */
 
-template <int W> OXRT_INLINE Lanes<float, W> nextUp(Lanes<float, W> x) {
-    const Lanes<uint32_t, W> bits = floatAsUint(x);
-    const Lanes<uint32_t, W> away = select(x > 0.0f, bits + 1u, bits - 1u);
-    const Lanes<float, W> next = uintAsFloat(select(x == 0.0f, 1u, away));
-    return select(x < __builtin_inff(), next, x);
-}
-template <int W> OXRT_INLINE Lanes<float, W> nextDown(Lanes<float, W> x) { return -nextUp(-x); }
-
+/* See device_ray.h: next to zero stands the smallest normal number. */
 template <class T, int W> OXRT_INLINE void setPacket(T (&values)[W], Lanes<T, W> lanes) { storeLanes<T, W>(values, lanes); }
 template <int W> OXRT_INLINE void setPacket(unsigned (&values)[W], uint32_t value) { storeLanes<uint32_t, W>(values, Lanes<uint32_t, W>(value)); }
 
@@ -165,9 +87,11 @@ template <int W> OXRT_INLINE void enterScalarHit(RayLanes<W>& ray, const Ray& on
     hit.geomID[lane] = unsigned(one.geometry - holder.geometries);
     hit.instID[0][lane] = one.instance ? unsigned(one.instance - one.root->instances) : RTC_INVALID_GEOMETRY_ID;
     ray.t.set(lane, one.t);
-    ray.kind.set(lane, one.kind);
-    for (int i = 0; i < 8; ++i)
-        ray.attributes[i].set(lane, one.attributes[i]);
+    if (isCustomGeometry(one)) {
+        ray.kind.set(lane, one.kind);
+        for (int i = 0; i < 8; ++i)
+            ray.attributes[i].set(lane, one.attributes[i]);
+    }
 }
 
 /* The masked lanes one after the other, with the scalar programs as callbacks; the lanes that hit something. */

@@ -89,12 +89,11 @@ Wide<oxrt::Tuple<int32_t, int32_t>> divide_lanes([[maybe_unused]] Lanes& thread,
 #line 40 "shader.py"
 void raygen_main_lanes([[maybe_unused]] Lanes& thread, [[maybe_unused]] Mask mask) {
     const Params& params = oxrt::launchParams<Params>(thread);
+    int32_t k{};
     Wide<int32_t> kept{};
 #line 41 "shader.py"
     Wide<uint32_t> i = oxrt::getLaunchIndex(thread).x;
     Wide<int32_t> total = Wide<int32_t>(0);
-    int32_t k{};
-#line 43 "shader.py"
     oxrt::Range<int32_t> range(0, params.count, 1);
 #line 43 "shader.py"
     while (range.next(k)) {
@@ -113,15 +112,15 @@ void raygen_main_lanes([[maybe_unused]] Lanes& thread, [[maybe_unused]] Mask mas
         }
     }
 #line 50 "shader.py"
-    int32_t k{};
-#line 50 "shader.py"
     oxrt::Range<int32_t> range_(10, 0, params.step);
 #line 50 "shader.py"
     while (range_.next(k)) {
         total = total - k;
     }
 #line 52 "shader.py"
-    for (int32_t k = 0; k < 4; ++k) {
+    oxrt::Range<int32_t> range_2(0, 4, 1);
+#line 52 "shader.py"
+    while (range_2.next(k)) {
         Wide<int32_t> last = k * total;
         total = total + last;
     }
@@ -205,7 +204,7 @@ void raygen_main_lanes([[maybe_unused]] Lanes& thread, [[maybe_unused]] Mask mas
     }
 }
 
-#line 209 "pipeline.cpp"
+#line 208 "pipeline.cpp"
 void run_raygen_main(OxrtThread* thread, const OxrtTile* tile) {
     oxrt::runBlocks<LANES>(*thread, *tile, [](Lanes& lanes, Mask mask) {
         raygen_main_lanes(lanes, mask);

@@ -1,0 +1,141 @@
+/* Candidates of a traversal: where they are, their SBT record, and whether they count.
+ *
+ * `Programs` is what the pipeline emits for each payload class: which programs a trace with that payload can run, as constants that
+ * decide what is compiled at all, and static functions that run them. Decision order: OptiX guide, "Ray flags", "Instance flags",
+ * "Any hit".
+ */
+#ifndef OXRT_DEVICE_CANDIDATE_H
+#define OXRT_DEVICE_CANDIDATE_H
+
+#include <oxrt/device_ray.h>
+
+namespace oxrt {
+inline namespace OXRT_ISA {
+
+/* What the emitted Programs of a payload class override. */
+struct NoPrograms {
+    using Payload = NoPayload;
+    static constexpr bool hasClosestHit = false;
+    static constexpr bool hasAnyHit = false;
+    static constexpr bool hasIntersection = false;
+    static constexpr bool hasMiss = false;
+    static constexpr bool mayThrow = false;
+    static constexpr bool countsDepth = false;  /* traces may nest deeper than maxTraceDepth */
+    static constexpr bool depthThrows = false;  /* ... which is an exception rather than a fault */
+    static constexpr uint32_t maxTraceDepth = 0;
+    static constexpr bool usesTime = false;
+    static constexpr bool isValidated = false;
+};
+
+/* ---- the scene ------------------------------------------------------------------------------------------------------------------- */
+
+/* What the handle names, null if it is zero or stale. */
+OXRT_INLINE const OxrtTraversableView* findTraversable(const OxrtLaunch& launch, uint64_t handle) {
+    const uint32_t slot = uint32_t(handle);
+    if (__builtin_expect(slot >= launch.traversableCount, 0))
+        return nullptr;
+    /* Another thread may destroy the accel meanwhile: the view stays readable until the launch has ended. */
+    const OxrtTraversableSlot& found = launch.traversables[slot];
+    const bool isCurrent = __atomic_load_n(&found.generation, __ATOMIC_ACQUIRE) == uint32_t(handle >> 32);
+    return __builtin_expect(isCurrent, 1) ? __atomic_load_n(&found.view, __ATOMIC_ACQUIRE) : nullptr;
+}
+
+/* Enter which primitive the hit is on. */
+OXRT_INLINE void locate(Ray& ray, uint32_t instance, uint32_t geometry, uint32_t primitive) {
+    ray.instance = instance == RTC_INVALID_GEOMETRY_ID ? nullptr : ray.root->instances + instance;
+    ray.geometry = (ray.instance ? ray.instance->child : ray.root)->geometries + geometry;
+    ray.primitive = primitive;
+}
+OXRT_INLINE void enterHit(Ray& ray, const RTCHit& hit, float t) {
+    locate(ray, hit.instID[0], hit.geomID, hit.primID);
+    ray.t = t;
+    ray.u = hit.u;
+    ray.v = hit.v;
+    ray.normal = {hit.Ng_x, hit.Ng_y, hit.Ng_z};
+}
+
+/* The hit's SBT record, null if there is none that this pipeline may run. */
+OXRT_INLINE const OxrtRecordHeader* findHitRecord(Ray& ray) {
+    const OxrtLaunch& launch = *ray.thread->launch;
+    const uint32_t instanceOffset = ray.instance ? ray.instance->sbtOffset : 0;
+    ray.recordIndex = instanceOffset + getSbtGASIndex(ray) * ray.sbtStride + ray.sbtOffset;
+    ray.record = findRecord(launch, launch.hitgroupRecords, launch.hitgroupStride, launch.hitgroupCount, ray.recordIndex);
+    return ray.record;
+}
+
+/* ---- candidates ------------------------------------------------------------------------------------------------------------------- */
+
+/* Whether any-hit programs run: the ray's flag beats the instance's, which beats the geometry's; ENFORCE beats DISABLE. */
+OXRT_INLINE bool anyHitEnabled(const Ray& ray, uint32_t instanceFlags, uint32_t geometryFlags) {
+    if (ray.flags & (RAY_DISABLE_ANYHIT | RAY_ENFORCE_ANYHIT))
+        return ray.flags & RAY_ENFORCE_ANYHIT;
+    if (instanceFlags & (INSTANCE_DISABLE_ANYHIT | INSTANCE_ENFORCE_ANYHIT))
+        return instanceFlags & INSTANCE_ENFORCE_ANYHIT;
+    return !(geometryFlags & GEOMETRY_DISABLE_ANYHIT);
+}
+
+/* Whether the ray's culling flags drop the candidate. */
+OXRT_INLINE bool isCulled(const Ray& ray, uint32_t instanceFlags, uint32_t geometryFlags, bool runsAnyHit) {
+    if (ray.flags & (runsAnyHit ? RAY_CULL_ENFORCED_ANYHIT : RAY_CULL_DISABLED_ANYHIT))
+        return true;
+    if (!(ray.flags & (RAY_CULL_BACK_FACING | RAY_CULL_FRONT_FACING)) || !isTriangleGeometry(ray))
+        return false;
+    if ((instanceFlags & INSTANCE_DISABLE_FACE_CULLING) || (geometryFlags & GEOMETRY_DISABLE_FACE_CULLING))
+        return false;
+    return ray.flags & (isFrontFacing(ray) ? RAY_CULL_FRONT_FACING : RAY_CULL_BACK_FACING);
+}
+
+/* Runs the any-hit program of a candidate's record; what it decided stands in ray.verdict. */
+template <class Programs> OXRT_INLINE void runAnyHit(Ray& ray, const OxrtRecordHeader& record) {
+    ray.verdict = Verdict::Accept;
+    Programs::anyHit(ray, *static_cast<typename Programs::Payload*>(ray.payload), record);
+    if constexpr (Programs::mayThrow)
+        if (ray.thread->exceptionPending)
+            ray.verdict = Verdict::Terminate;
+    if (ray.verdict == Verdict::Accept && (ray.flags & RAY_TERMINATE_ON_FIRST_HIT))
+        ray.verdict = Verdict::Terminate;
+}
+
+/* Decides about the candidate that was entered into the ray; runs the any-hit program if it is to run. */
+template <class Programs, bool MAY_CULL> OXRT_INLINE Verdict judge(Ray& ray) {
+    const uint32_t instanceFlags = ray.instance ? ray.instance->flags : 0;
+    const uint32_t geometryFlags = ray.geometry->recordFlags[localRecord(ray)];
+    const bool runsAnyHit = anyHitEnabled(ray, instanceFlags, geometryFlags);
+    if constexpr (MAY_CULL)
+        if (isCulled(ray, instanceFlags, geometryFlags, runsAnyHit))
+            return Verdict::Ignore;
+    if constexpr (Programs::hasAnyHit)
+        if (runsAnyHit)
+            if (const OxrtRecordHeader* record = findHitRecord(ray)) {
+                runAnyHit<Programs>(ray, *record);
+                return ray.verdict;
+            }
+    return ray.flags & RAY_TERMINATE_ON_FIRST_HIT ? Verdict::Terminate : Verdict::Accept;
+}
+
+/* Stops the traversal; what was accepted stays. */
+OXRT_INLINE void stopTraversal(Ray& ray, RTCRay& embreeRay, float t) {
+    ray.isTerminated = true;
+    ray.closest = t;
+    embreeRay.tfar = -__builtin_inff();
+}
+
+/* Embree's filter callback: called for every candidate on a built-in primitive. */
+template <class Programs, bool MAY_CULL> void filterCandidate(const RTCFilterFunctionNArguments* arguments) {
+    Ray& ray = *reinterpret_cast<Ray*>(arguments->context);
+    RTCRay& embreeRay = *static_cast<RTCRay*>(arguments->ray);
+    if (arguments->valid[0] != -1)
+        return;
+    enterHit(ray, *static_cast<const RTCHit*>(arguments->hit), embreeRay.tfar);
+    ray.objectRay = &embreeRay;
+    switch (judge<Programs, MAY_CULL>(ray)) {
+    case Verdict::Accept: break;
+    case Verdict::Ignore: arguments->valid[0] = 0; break;
+    case Verdict::Terminate: stopTraversal(ray, embreeRay, ray.t); break;
+    }
+}
+
+}  // namespace OXRT_ISA
+}  // namespace oxrt
+
+#endif
