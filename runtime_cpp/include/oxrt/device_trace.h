@@ -30,19 +30,30 @@ template <uint32_t VALUE> struct FlagTraits<KnownFlags<VALUE>> {
 
 /* ---- queries ----------------------------------------------------------------------------------------------------------------------- */
 
+/* Embree reads origin and tnear in one piece right after the call, direction and time in another. Stored one by one they could not be
+   forwarded from the store buffer: Embree would wait for the cache, a tenth of a short ray's time. */
+using EmbreeRow = float __attribute__((vector_size(16), may_alias));
+static_assert(offsetof(RTCRay, org_x) == 0 && offsetof(RTCRay, tnear) == 12 && offsetof(RTCRay, dir_x) == 16 && offsetof(RTCRay, time) == 28);
+
 OXRT_INLINE void setEmbreeRay(RTCRay& target, const Ray& ray) {
-    target.org_x = ray.origin.x;
-    target.org_y = ray.origin.y;
-    target.org_z = ray.origin.z;
-    target.tnear = nextUp(ray.tmin);
-    target.dir_x = ray.direction.x;
-    target.dir_y = ray.direction.y;
-    target.dir_z = ray.direction.z;
-    target.time = ray.time;
+    EmbreeRow* rows = reinterpret_cast<EmbreeRow*>(&target);
+    rows[0] = EmbreeRow{ray.origin.x, ray.origin.y, ray.origin.z, nextUp(ray.tmin)};
+    rows[1] = EmbreeRow{ray.direction.x, ray.direction.y, ray.direction.z, ray.time};
     target.tfar = nextDown(ray.tmax);
     target.mask = ray.mask;
     target.id = 0;
     target.flags = 0;
+}
+
+/* Whether built-in primitives may need a decision under these ray flags. */
+template <class Programs> OXRT_INLINE bool mayFilter(uint32_t flags) {
+    const bool runsAnyHit = Programs::hasAnyHit && ((flags & RAY_ENFORCE_ANYHIT) || !(flags & RAY_DISABLE_ANYHIT));
+    return runsAnyHit || (flags & RAY_CULL_ANY);
+}
+/* Whether that is so even on geometries that disable any-hit programs, where Embree does not call the filter unasked. */
+template <class Programs> OXRT_INLINE bool filtersEverything(uint32_t flags, const OxrtTraversableView& root) {
+    const uint32_t overridingFlags = RAY_CULL_ANY | (Programs::hasAnyHit ? RAY_ENFORCE_ANYHIT : 0u);
+    return (flags & overridingFlags) || (root.needs & OXRT_SCENE_HAS_INSTANCE_FLAGS);
 }
 
 /* Embree's query arguments for traces that need callbacks; the ray's address goes with them. */
@@ -58,12 +69,9 @@ template <class Programs, class Flags, class Arguments> OXRT_INLINE void setCall
     arguments.filter = nullptr;
     arguments.minWidth = 0.0f;
     if constexpr (Known::mayCull || (Programs::hasAnyHit && Known::mayRunAnyHit)) {
-        const bool runsAnyHit = Programs::hasAnyHit && ((ray.flags & RAY_ENFORCE_ANYHIT) || !(ray.flags & RAY_DISABLE_ANYHIT));
-        const uint32_t overridingFlags = RAY_CULL_ANY | (Programs::hasAnyHit ? RAY_ENFORCE_ANYHIT : 0u);
-        if (runsAnyHit || (ray.flags & RAY_CULL_ANY))
+        if (mayFilter<Programs>(ray.flags))
             arguments.filter = filterCandidate<Programs, Known::mayCull>;
-        /* Without this flag Embree calls the filter on those geometries only that do not disable any-hit programs. */
-        if ((ray.flags & overridingFlags) || (ray.root->needs & OXRT_SCENE_HAS_INSTANCE_FLAGS))
+        if (filtersEverything<Programs>(ray.flags, *ray.root))
             arguments.flags = RTC_RAY_QUERY_FLAG_INVOKE_ARGUMENT_FILTER;
     }
 }
