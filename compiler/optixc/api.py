@@ -103,7 +103,7 @@ class DeviceContext(Context):
             bound_values=dict(bound_values or {}),
         )
         built = driver.build(units, [program.name for program in used], chosen, self.cache)
-        return Pipeline(self, groups, str(built.library), built.params, built.report)
+        return Pipeline(self, groups, str(built.library), built.params, built.report, built.programs)
 
     def accel_build(
         self,

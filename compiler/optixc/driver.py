@@ -53,11 +53,12 @@ class Unit:
 
 @dataclass(frozen=True)
 class Built:
-    """A compiled pipeline: where it lies, its launch parameters (`name`, `layout`, `size`), what the report says."""
+    """A compiled pipeline: where it lies, its launch parameters (`name`, `layout`, `size`), what the report says, its programs."""
 
     library: Path
     params: Json | None
     report: Json
+    programs: list[Json]
 
 
 @dataclass(frozen=True)
@@ -104,7 +105,7 @@ def build(units: Sequence[Unit], names: Sequence[str], options: CompileOptions, 
         entry = store.find(note["entry"]) if note is not None else None
         if note is not None and entry is not None:
             report = {**note["report"], "compile_seconds": time.perf_counter() - began, "cache_hit": True}
-            return Built(entry.library, note["params"], report)
+            return Built(entry.library, note["params"], report, note["programs"])
     emitted = emit([unit.result.module for unit in units], names, options)
     key = digest("library", emitted.text, *plan.flags(), compiler.identity, *_surroundings(plan))
     entry = store.find(key)
@@ -112,9 +113,11 @@ def build(units: Sequence[Unit], names: Sequence[str], options: CompileOptions, 
         entry = store.store(key, {}, lambda output: toolchain.compile_shared(emitted.text, output, compiler, plan))
     params = _describe_params(emitted.pipeline.params)
     report = _describe(emitted, options, compiler)
+    programs = [_describe_program(program) for program in emitted.pipeline.programs]
     if known is not None:
-        store.write_note(known, {"entry": key, "params": params, "report": report})
-    return Built(entry.library, params, {**report, "compile_seconds": time.perf_counter() - began, "cache_hit": entry.hit})
+        store.write_note(known, {"entry": key, "params": params, "report": report, "programs": programs})
+    finished = {**report, "compile_seconds": time.perf_counter() - began, "cache_hit": entry.hit}
+    return Built(entry.library, params, finished, programs)
 
 
 def emit(modules: Sequence[nodes.Module], names: Sequence[str], options: CompileOptions, print_after: PrintAfter | None = None) -> Emitted:

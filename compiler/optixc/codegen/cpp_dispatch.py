@@ -5,7 +5,6 @@ The structs are declared before the programs, because programs trace; their func
 
 from __future__ import annotations
 
-from optixc.codegen.callables import CallableSignature, callables_with
 from optixc.codegen.cpp_signatures import Signatures, used_parameters
 from optixc.codegen.cpp_types import TypeNames
 from optixc.codegen.program_classes import ProgramClass, payload_of
@@ -13,6 +12,7 @@ from optixc.codegen.writer import Writer
 from optixc.ir.nodes import Function, ParameterRole, Pipeline, is_reference_type
 from optixc.ir.programs import ProgramKind
 from optixc.ir.types import Struct, Void
+from optixc.passes.callables import CallableSignature, callables_with
 
 SLOTS = {
     ProgramKind.CLOSESTHIT: "oxrt::SLOT_CLOSESTHIT",
@@ -134,7 +134,7 @@ class Dispatch:
         arguments = ["OxrtThread& thread", "uint32_t index"]
         for position, type_ in enumerate(signature.arguments):
             text = self._types.name(type_)
-            arguments.append(f"{text}& a{position}" if is_reference_type(type_) else f"{text} a{position}")
+            arguments.append(f"const {text}& a{position}" if is_reference_type(type_) else f"{text} a{position}")
         return f"{self._types.name(signature.result)} {name}({', '.join(arguments)})"
 
     def declare_callable(self, signature: CallableSignature) -> None:

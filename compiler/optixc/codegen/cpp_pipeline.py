@@ -5,7 +5,8 @@ Takes a pipeline that all passes ran on; the text compiles without warnings and 
 
 from __future__ import annotations
 
-from optixc.codegen.callables import signatures_called
+from collections.abc import Sequence
+
 from optixc.codegen.cpp_dispatch import Dispatch
 from optixc.codegen.cpp_scalar import ScalarFunction
 from optixc.codegen.cpp_signatures import Signatures
@@ -19,6 +20,7 @@ from optixc.ir.nodes import Function, ParameterRole, Pipeline
 from optixc.ir.programs import ProgramKind
 from optixc.ir.types import Struct
 from optixc.ir.walk import called_helpers, expressions
+from optixc.passes.callables import CallableSignature, signatures_called
 from optixc.passes.features import Features
 from optixc.version import __version__
 
@@ -49,7 +51,8 @@ class PipelineFile:
         self._writer.line("namespace {")
         self._writer.line()
         self._types.definitions(self._writer)
-        self._declarations()
+        self._declare_programs()
+        self._declare_functions(self._pipeline.helpers, signatures_called(self._pipeline))
         for function in (*callees_first(self._pipeline.helpers), *self._pipeline.programs):
             ScalarFunction(self._writer, function, self._types, self._signatures, options_of(self._pipeline)).write()
         for programs in self._classes.values():
@@ -77,7 +80,8 @@ class PipelineFile:
             self._writer.line("#include <oxrt/device_texture.h>")
         self._writer.line()
 
-    def _declarations(self) -> None:
+    def _declare_programs(self) -> None:
+        """Numbers of programs, and the classes of those that traces run."""
         numbers = ", ".join(self._signatures.function(program.name) for program in self._pipeline.programs)
         self._writer.line("/* Program numbers, as SBT records hold them. */")
         self._writer.line("namespace number {")
@@ -86,14 +90,16 @@ class PipelineFile:
         self._writer.line()
         for programs in self._classes.values():
             self._dispatch.declare_class(programs)
-        signatures = signatures_called(self._pipeline)
+
+    def _declare_functions(self, helpers: Sequence[Function], signatures: Sequence[CallableSignature]) -> None:
+        """Functions that others call before their definition."""
         for signature in signatures:
             self._dispatch.declare_callable(signature)
         recursive = recursive_helpers(self._pipeline.helpers)
-        for helper in self._pipeline.helpers:
+        for helper in helpers:
             if helper.name in recursive:
                 self._writer.line(f"{self._signatures.head(helper, self._signatures.inner_names(helper))};")
-        if signatures or recursive:
+        if signatures or any(helper.name in recursive for helper in helpers):
             self._writer.line()
 
     def _entry(self, program: Function) -> None:

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from optixc.codegen.callables import CallableSignature, signature_of_call, signatures_called
 from optixc.codegen.cpp_types import TypeNames
 from optixc.codegen.declarations import assigned_local
 from optixc.codegen.names import Scope
@@ -17,6 +16,7 @@ from optixc.codegen.program_classes import ProgramClass
 from optixc.ir.nodes import CallCallable, Function, LocalRef, Parameter, ParameterRole, Pipeline, is_reference_type
 from optixc.ir.types import Struct
 from optixc.ir.walk import expressions, statements
+from optixc.passes.callables import CallableSignature, signature_of_call, signatures_called
 
 
 @dataclass(frozen=True)

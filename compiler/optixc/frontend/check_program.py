@@ -43,7 +43,9 @@ def program_parameters(c: Context, symbol: FunctionSymbol) -> list[InstanceParam
             c.poisoned.add(argument.arg)
             continue
         role = _role(kind, type_)
-        if role is None or (role is not ParameterRole.VALUE and any(parameter.role is role for parameter in found)):
+        is_second = any(parameter.role is role for parameter in found)
+        is_free = role is ParameterRole.VALUE or (role is ParameterRole.RECORD and kind in _CALLABLES)
+        if role is None or (is_second and not is_free):
             what = f"a second {role.value}" if role is not None else f"a parameter of type {type_}"
             c.error("OX315", argument, f"{_a(kind.value)} program does not take {what}", _expectation(kind))
             c.poisoned.add(argument.arg)
@@ -51,7 +53,16 @@ def program_parameters(c: Context, symbol: FunctionSymbol) -> list[InstanceParam
         by_reference = role in (ParameterRole.PAYLOAD, ParameterRole.RECORD) or isinstance(type_, t.Struct | t.FixedArray)
         by_reference = by_reference and role is not ParameterRole.ATTRIBUTES
         found.append(InstanceParameter(Local(argument.arg, type_, by_reference=by_reference), role))
-    return found
+    return _one_record(found) if kind in _CALLABLES else found
+
+
+def _one_record(parameters: list[InstanceParameter]) -> list[InstanceParameter]:
+    """A callable's structs may be arguments too: only the last is taken for the record's data, until its calls are known."""
+    last = next((p for p in reversed(parameters) if p.role is ParameterRole.RECORD), None)
+    for parameter in parameters:
+        if parameter.role is ParameterRole.RECORD and parameter is not last:
+            parameter.role = ParameterRole.VALUE
+    return parameters
 
 
 def check_parameter_names(c: Context, symbol: FunctionSymbol) -> bool:
@@ -83,7 +94,7 @@ def _expectation(kind: ProgramKind) -> str:
     if kind in _WITH_ATTRIBUTES:
         words.insert(1, "one `@ox.attributes` class")
     if kind in _CALLABLES:
-        words.append("values")
+        words.append("values, structs too")
     return "it takes " + ", ".join(words)
 
 

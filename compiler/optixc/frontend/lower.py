@@ -15,6 +15,7 @@ from optixc.frontend.lower_expr import lower_expression
 from optixc.frontend.lower_stmt import lower_body
 from optixc.ir import types as t
 from optixc.ir.nodes import Function, Local, Module, Parameter, ParameterRole
+from optixc.ir.programs import CALLABLES
 
 
 def lower(checked: Checked) -> Module:
@@ -62,7 +63,7 @@ def _lower_function(instance: FunctionInstance, made: dict[str, t.Struct], needs
     lower_body(lowering, symbol.node.body, block)
     parameters = [Parameter(p.local, p.role, p.written) for p in instance.parameters]
     role = ParameterRole.VALUE if instance.kind is None else ParameterRole.RECORD
-    parameters += [Parameter(local, role) for local in hidden]
+    parameters += [Parameter(local, role, hidden=True) for local in hidden]
     return Function(
         name=instance.name,
         source_name=symbol.name,
@@ -81,7 +82,9 @@ def _hidden_records(lowering: FunctionLowering, needs: RecordNeeds) -> list[Loca
     instance = lowering.instance
     hidden = []
     for struct in needs.of(instance):
-        own = next((p.local for p in instance.parameters if p.role is ParameterRole.RECORD and p.local.type == struct), None)
+        # A callable's struct parameter may turn out to be an argument when the pipeline is linked.
+        candidates = [] if instance.kind in CALLABLES else instance.parameters
+        own = next((p.local for p in candidates if p.role is ParameterRole.RECORD and p.local.type == struct), None)
         if own is None:
             own = Local(lowering.unique_name("record"), struct, by_reference=True)
             hidden.append(own)

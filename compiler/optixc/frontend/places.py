@@ -10,6 +10,7 @@ from optixc.frontend.checked import ConstantUse, ElementUse, FieldUse, IndexUse,
 from optixc.frontend.context import Context
 from optixc.ir import types as t
 from optixc.ir.nodes import Local, ParameterRole, is_reference_type
+from optixc.ir.programs import CALLABLES
 
 
 class Root(Enum):
@@ -78,9 +79,11 @@ def why_read_only(c: Context, place: Place) -> str | None:
     if place.local is not None:
         role = parameter_role(c, place.local)
         if role is ParameterRole.RECORD:
-            return "the data of an SBT record is read-only"
+            return "the data of an SBT record is read-only" if c.instance.kind not in CALLABLES else "a callable's structs are read-only"
         if role is ParameterRole.ATTRIBUTES:
             return "attributes are read-only"
+        if role is ParameterRole.VALUE and c.instance.kind is not None and is_reference_type(place.local.type):
+            return "the arguments of a callable are read-only"
     return None
 
 

@@ -89,22 +89,28 @@ class ProgramGroup:
 
     def check_data(self, data: Any) -> None:
         """Raises unless every program of the group can read `data`."""
-        layout = structs.layout_of(data)
-        if data is not None and (layout is None or isinstance(data, type)):
+        if data is not None and (structs.layout_of(data) is None or isinstance(data, type)):
             raise InvalidValueError(f"a record's data is an instance of an @ox.struct class, not {type(data).__name__}")
-        for program in self.programs.values():
-            if program.record is None:
-                continue
-            if layout is None:
-                raise InvalidValueError(f"{program.name} takes a {program.record_name} as its record's data; none was given")
-            if not f"{layout.text};".startswith(f"{program.record};"):
-                raise InvalidValueError(
-                    f"{program.name} takes a {program.record_name} ({program.record}) as its record's data, "
-                    f"not a {type(data).__name__} ({layout.text})"
-                )
+        # Only the calls of a pipeline tell which struct of a callable is its record's.
+        if self.kind is not ProgramGroupKind.CALLABLES:
+            for program in self.programs.values():
+                check_layout(program.name, program.record, program.record_name, data)
 
     def __repr__(self) -> str:
         return f"<ProgramGroup {self.kind.name} {' '.join(program.name for program in self.programs.values())}>"
+
+
+def check_layout(name: str, record: str | None, record_name: str | None, data: Any) -> None:
+    """Raises unless `data` begins with the struct that the program reads; `record` is its layout, None if it reads none."""
+    if record is None:
+        return
+    layout = structs.layout_of(data)
+    if layout is None:
+        raise InvalidValueError(f"{name} takes a {record_name} as its record's data; none was given")
+    if not f"{layout.text};".startswith(f"{record};"):
+        raise InvalidValueError(
+            f"{name} takes a {record_name} ({record}) as its record's data, not a {type(data).__name__} ({layout.text})"
+        )
 
 
 class Record:

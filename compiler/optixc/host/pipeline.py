@@ -11,7 +11,7 @@ from typing import Any
 from optixc.errors import InvalidDeviceContextError, InvalidOperationError, InvalidValueError, from_code
 from optixc.host import library, structs
 from optixc.host.context import Context
-from optixc.host.groups import ProgramGroup
+from optixc.host.groups import ProgramGroup, Record, check_layout
 from optixc.host.sbt import ShaderBindingTable
 
 STEP_MS = 50
@@ -54,12 +54,19 @@ class Pipeline:
     """
 
     def __init__(
-        self, context: Context, groups: Sequence[ProgramGroup], path: str, params: dict[str, Any] | None, report: dict[str, Any]
+        self,
+        context: Context,
+        groups: Sequence[ProgramGroup],
+        path: str,
+        params: dict[str, Any] | None,
+        report: dict[str, Any],
+        programs: Sequence[dict[str, Any]],
     ) -> None:
         self._pipeline: Any = None
         self._context = context
         self._groups = tuple(groups)
         self._params = params
+        self.programs = {one["name"]: one for one in programs}
         self._params_type: type | None = None
         self._lock = threading.Lock()
         self._lib = library.lib()
@@ -98,6 +105,13 @@ class Pipeline:
     def report(self) -> PipelineReport:
         """What was compiled in and why, compile seconds and cache hit, trace forms."""
         return self._report
+
+    def check_record(self, record: Record) -> None:
+        """Raises unless the record's data is what its programs in this pipeline read."""
+        for program in record.group.programs.values():
+            linked = self.programs.get(program.name)
+            if linked is not None:
+                check_layout(program.name, linked["record"], linked["record_name"], record.data)
 
     def pack_header(self, group: ProgramGroup, data_size: int) -> bytes:
         """The 32 bytes before the data of a record that runs `group` in this pipeline."""

@@ -94,6 +94,7 @@ class _PackedTable:
 
     def rewrite(self, record: Record) -> bool:
         """Writes a record's new data; False if it grew or shrank, so that the table must be laid out anew."""
+        self._pipeline.check_record(record)
         data = record.packed()
         for section, offset in self._places.get(record, ()):
             place = section[offset + HEADER_SIZE :][: len(data)]
@@ -115,6 +116,7 @@ class _PackedTable:
         for number, record in enumerate(records):
             if record is None:
                 continue
+            self._pipeline.check_record(record)
             offset, data = number * stride, record.packed()
             section[offset : offset + HEADER_SIZE] = self._header(record.group, len(data))
             section[offset + HEADER_SIZE : offset + HEADER_SIZE + len(data)] = data

@@ -235,11 +235,15 @@ class ParameterRole(Enum):
 
 @dataclass(frozen=True)
 class Parameter:
-    """A parameter; PAYLOAD is by reference and writable, ATTRIBUTES a value, RECORD read-only by reference."""
+    """A parameter; PAYLOAD is by reference and writable, ATTRIBUTES a value, RECORD read-only by reference.
+
+    `hidden` if the author did not write it: a record that get_sbt_data() reads.
+    """
 
     local: Local
     role: ParameterRole = ParameterRole.VALUE
     written: bool = False
+    hidden: bool = False
 
 
 @dataclass(frozen=True)

@@ -36,4 +36,5 @@ IS = ProgramKind.INTERSECTION
 EX = ProgramKind.EXCEPTION
 DC = ProgramKind.DIRECT_CALLABLE
 CC = ProgramKind.CONTINUATION_CALLABLE
+CALLABLES: frozenset[ProgramKind] = frozenset({DC, CC})
 ALL_PROGRAMS: frozenset[ProgramKind] = frozenset(ProgramKind)

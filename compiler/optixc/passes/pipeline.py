@@ -17,6 +17,7 @@ from optixc.ir.nodes import (
 )
 from optixc.ir.types import Struct
 from optixc.ir.walk import called_helpers, map_blocks, map_operands, rewrite
+from optixc.passes.callables import CallableError, resolve_callables
 
 
 class LinkError(Exception):
@@ -36,7 +37,11 @@ def link(modules: Sequence[Module], program_names: Iterable[str], options: Pipel
         programs.extend(_rename_calls(program, renamed) for program in chosen)
     programs.sort(key=lambda program: names.index(program.name))
     structs = tuple(dict.fromkeys(struct for module in modules for struct in module.structs))
-    return Pipeline(structs, params, tuple(helpers.values()), tuple(programs), options)
+    linked = Pipeline(structs, params, tuple(helpers.values()), tuple(programs), options)
+    try:
+        return resolve_callables(linked)
+    except CallableError as error:
+        raise LinkError(str(error)) from error
 
 
 def _homes(modules: Sequence[Module], names: list[str]) -> dict[str, int]:
