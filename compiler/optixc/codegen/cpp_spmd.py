@@ -100,7 +100,7 @@ class LaneFunction:
         if self._clone.returns_apart:
             if not isinstance(self._function.result, Void):
                 self._writer.line(f"{self._types.name(self._function.result, True)} result{{}};")
-            if any(self._contains_return(s) for s in statements(self._function.body) if isinstance(s, While | ForRange)):
+            if any(self._is_left(s) for s in statements(self._function.body) if isinstance(s, While | ForRange)):
                 self._writer.line("Mask returned = false;")
 
     @property
@@ -159,7 +159,7 @@ class LaneFunction:
             case CallIntrinsic():
                 self._call(statement, statement.target, self._calls.intrinsic(statement))
             case CallCallable():
-                raise AssertionError("callables have no form over lanes")
+                self._call(statement, statement.target, self._calls.callable(statement))
             case Trace():
                 self._trace(statement)
             case Assert():
@@ -280,11 +280,14 @@ class LaneFunction:
 
     def _end_loop(self, statement: While | ForRange) -> None:
         self._loops.pop()
-        if id(statement) in self._clone.exits and self._contains_return(statement):
+        if self._is_left(statement):
             self._writer.line(f"{self._mask} = oxrt::without({self._mask}, returned);")
 
-    def _contains_return(self, statement: Stmt) -> bool:
-        return id(statement) in self._clone.exits and any(isinstance(inner, Return) for inner in statements((statement,)))
+    def _is_left(self, loop: While | ForRange) -> bool:
+        """Whether lanes may leave the function inside of the loop, while others stay."""
+        if id(loop) not in self._clone.exits:
+            return False
+        return any(isinstance(inner, Return) or self._clones.analysis.leaves(inner) for inner in statements((loop,)))
 
     def _poll(self, statement: While) -> None:
         if not statement.bounded:
@@ -363,17 +366,21 @@ class LaneFunction:
             return
         if value is not None:
             self._writer.line(f"oxrt::assign({self._mask}, result, {value});", statement.span)
+        self._leave(self._mask, statement)
+        self._writer.line(f"{self._mask} = false;", statement.span)
+
+    def _leave(self, lanes: str, statement: Stmt) -> None:
+        """Takes lanes that leave the function out of the loops around."""
         loops = [loop for loop in self._loops if loop is not None]
         if loops:
-            self._writer.line(f"returned |= {self._mask};", statement.span)
+            self._writer.line(f"returned |= {lanes};", statement.span)  # type: ignore[union-attr]
             for loop in loops:
-                self._writer.line(f"{loop} = oxrt::without({loop}, {self._mask});")
-        self._writer.line(f"{self._mask} = false;", statement.span)
+                self._writer.line(f"{loop} = oxrt::without({loop}, {lanes});")
 
     # ---- calls ---------------------------------------------------------------------------------------------------------------
 
-    def _call(self, statement: CallHelper | CallIntrinsic, target: Local | None, call: tuple[str, bool] | None) -> None:
-        """Writes a call; `call` is its text and whether its result varies."""
+    def _call(self, statement: CallHelper | CallIntrinsic | CallCallable, target: Local | None, call: tuple[str, bool] | None) -> None:
+        """Writes a call; `call` is its text and whether its result varies. Lanes for which it ended something leave."""
         if call is None:
             return
         text, varies = call
@@ -381,11 +388,22 @@ class LaneFunction:
             self._writer.line(f"{text};", statement.span)
         else:
             self._set(statement, target, text, varies)
+        self._leave_after(statement)
 
     def _trace(self, statement: Trace) -> None:
-        lines = self._calls.trace(statement)
-        for line in lines:
+        for line in self._calls.trace(statement):
             self._writer.line(line, statement.span)
+        self._leave_after(statement)
+
+    def _leave_after(self, statement: CallHelper | CallIntrinsic | CallCallable | Trace) -> None:
+        """Behind a call that may have ended the program or the launch index of some lanes: these leave the function."""
+        if not self._clones.analysis.leaves(statement):
+            return
+        gone = self._calls.gone(statement)
+        if gone is not None and any(loop is not None for loop in self._loops):
+            gone = self._hoist("gone", gone)
+        self._leave(gone or self._mask, statement)
+        self._writer.line(f"{self._mask} = {f'oxrt::without({self._mask}, {gone})' if gone is not None else 'false'};", statement.span)
 
     def _assert(self, statement: Assert) -> None:
         if self._options.is_checked:

@@ -3,15 +3,16 @@
 from __future__ import annotations
 
 from optixc.codegen.cpp_signatures import FunctionNames, Signatures
-from optixc.codegen.cpp_spmd_expr import LaneExpressions
+from optixc.codegen.cpp_spmd_expr import PAYLOAD_SETTER, LaneExpressions
 from optixc.codegen.cpp_spmd_types import WideTypes
 from optixc.codegen.cpp_types import field_name
 from optixc.codegen.names import string_literal
-from optixc.codegen.needs import Options
+from optixc.codegen.needs import REPORT, THROW, Options
 from optixc.codegen.program_classes import known_flags
 from optixc.ir.intrinsic_rows import INTRINSICS
-from optixc.ir.intrinsics import State
+from optixc.ir.intrinsics import Effect, Intrinsic, State
 from optixc.ir.nodes import (
+    CallCallable,
     CallHelper,
     CallIntrinsic,
     ComponentRef,
@@ -107,15 +108,65 @@ class LaneCalls:
         return self._expressions.lanes.helper_call(statement.function, statement.arguments, arguments), callee.result_varies
 
     def intrinsic(self, statement: CallIntrinsic) -> tuple[str, bool] | None:
-        """A device function with an effect: each lane's own call, lowest lane first."""
+        """A device function with an effect; those without a form over lanes are each lane's own call, lowest lane first. None for a
+        call that does nothing in this pipeline."""
         row = INTRINSICS[statement.name]
-        arguments = [f"oxrt::inLane({self._expressions.text(argument)}, lane)" for argument in statement.arguments]
+        arguments = [self._expressions.text(argument) for argument in statement.arguments]
+        if statement.name == THROW and not self._options.user_exceptions:
+            return None
+        if statement.name == THROW:
+            place = string_literal(f"{statement.span.path}:{statement.span.line}")
+            return f"oxrt::throwException({', '.join([self._names.thread, self._mask, place, *arguments])})", False
+        if statement.name == REPORT:
+            return self._report(statement, arguments), True
+        if statement.name.startswith(PAYLOAD_SETTER):
+            index = statement.name.removeprefix(PAYLOAD_SETTER)
+            return f"oxrt::setPayloadWord({self._names.trace}, {self._mask}, {index}, {arguments[0]})", False
+        if row.effect is Effect.ENDS_PROGRAM:
+            return f"{row.cpp}({self._names.trace}, {self._mask})", False
         assert row.state in (State.NONE, State.THREAD), f"{statement.name} has no form over lanes"
+        return self._lane_by_lane(statement, row)
+
+    def _lane_by_lane(self, statement: CallIntrinsic, row: Intrinsic) -> tuple[str, bool]:
         hidden = [f"{self._names.thread}.atLane(lane)"] if row.state is State.THREAD else []
+        arguments = [f"oxrt::inLane({self._expressions.text(argument)}, lane)" for argument in statement.arguments]
+        if isinstance(statement.arguments[0], ElementRef):
+            element = statement.arguments[0]
+            indices = ", ".join(f"oxrt::inLane({self._expressions.text(index)}, lane)" for index in element.indices)
+            arguments[0] = f"oxrt::inLane({self._expressions.text(element.array)}, lane).at({indices})"
         call = f"{row.cpp}({', '.join([*hidden, *arguments])})"
         if statement.target is None:
-            return f"oxrt::eachLane({self._mask}, [&](int lane) {{ {call}; }})", True
+            return f"oxrt::eachLane({self._mask}, [&]([[maybe_unused]] int lane) {{ {call}; }})", True
         return f"oxrt::mapActive({self._mask}, [&]([[maybe_unused]] int lane) {{ return {call}; }})", True
+
+    def _report(self, statement: CallIntrinsic, arguments: list[str]) -> str:
+        offered = statement.arguments[2:]
+        words = arguments[:2]
+        if len(offered) == 1 and isinstance(offered[0].type, Struct):
+            words.append(f"oxrt::attributesToLanes<{self._types.types.struct(offered[0].type)}, LANES>({self._expressions.wide(offered[0])})")
+        elif offered:
+            words.append(f"oxrt::attributeLanes<LANES>({', '.join(self._expressions.wide(argument) for argument in offered)})")
+        return f"oxrt::reportIntersection<Programs>({', '.join([self._names.trace, self._mask, *words])})"
+
+    def callable(self, statement: CallCallable) -> tuple[str, bool]:
+        name = f"{self._signatures.dispatcher(statement)}_lanes"
+        arguments = [
+            self._argument(argument) if self._expressions.lanes.varies(argument) else self._expressions.wide(argument)
+            for argument in statement.arguments
+        ]
+        return f"{name}({', '.join([self._names.thread, self._mask, self._expressions.wide(statement.index), *arguments])})", True
+
+    def gone(self, statement: CallHelper | CallIntrinsic | CallCallable | Trace) -> str | None:
+        """The lanes for which a call ended the program or the launch index; None for all that made it."""
+        thrown, ended = f"{self._names.thread}.thrown", f"oxrt::endedLanes({self._names.trace})"
+        match statement:
+            case CallIntrinsic(name=name):
+                return ended if name == REPORT else None
+            case CallHelper(function=function):
+                needs = self._signatures.needs(function)
+                return " | ".join([*([ended] if needs.ends else []), *([thrown] if needs.throws else [])])
+            case CallCallable() | Trace():
+                return thrown
 
     def print(self, statement: Print) -> str:
         items = [

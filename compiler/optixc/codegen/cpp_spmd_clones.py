@@ -8,6 +8,7 @@ from __future__ import annotations
 from optixc.codegen.cpp_signatures import FunctionNames, Signatures, used_parameters
 from optixc.codegen.cpp_spmd_types import WideTypes
 from optixc.codegen.names import Scope
+from optixc.codegen.needs import options_of
 from optixc.ir.intrinsic_rows import INTRINSICS
 from optixc.ir.intrinsics import Effect, State
 from optixc.ir.nodes import (
@@ -40,7 +41,7 @@ class Clones:
     """Clones by need: asking for one with `helper` makes it part of the file."""
 
     def __init__(self, pipeline: Pipeline, types: WideTypes, signatures: Signatures, scope: Scope) -> None:
-        self.analysis = UniformityAnalysis({helper.name: helper for helper in pipeline.helpers})
+        self.analysis = UniformityAnalysis({helper.name: helper for helper in pipeline.helpers}, options_of(pipeline).traces_throw)
         self._helpers = {helper.name: helper for helper in pipeline.helpers}
         self._types = types
         self._signatures = signatures
@@ -128,7 +129,12 @@ class Clones:
             text = self._parameter(parameter, parameter.local.name in clone.varying, parameter.local.name in assigned)
             parameters.append(f"{text} {names.locals[parameter.local.name]}" if parameter.local.name in used else text)
         result = self._types.name(function.result, clone.result_varies)
-        return f"{result} {self.name(clone)}({', '.join(parameters)})"
+        template = "template <class Programs> " if needs.programs else ""
+        return f"{template}{result} {self.name(clone)}({', '.join(parameters)})"
+
+    def callee_name(self, clone: Clone) -> str:
+        """The function as a call names it, inside of a function that has its programs as a template argument."""
+        return f"{self.name(clone)}<Programs>" if self._signatures.needs(clone.function.name).programs else self.name(clone)
 
     def _parameter(self, parameter: Parameter, is_varying: bool, is_assigned: bool) -> str:
         text = self._types.name(parameter.local.type, is_varying)

@@ -37,8 +37,11 @@ _THREAD_LANES = frozenset({"get_launch_index", "get_launch_dimensions"})
 _PER_LANE = frozenset({"transpose", "determinant", "inverse", "mul_hi"})
 """Mathematics without a form for lanes."""
 
+PAYLOAD_GETTER, PAYLOAD_SETTER = "get_payload_", "set_payload_"
+
 _HIT_LANES = frozenset(
-    """get_world_ray_origin get_world_ray_direction get_ray_tmin get_ray_tmax get_ray_time get_ray_flags get_ray_visibility_mask
+    """get_world_ray_origin get_world_ray_direction get_object_ray_origin get_object_ray_direction get_ray_tmin
+    get_ray_tmax get_ray_time get_ray_flags get_ray_visibility_mask
     get_primitive_index get_sbt_gas_index get_instance_id get_instance_index get_gas_traversable_handle get_hit_kind get_primitive_type
     is_front_face_hit is_back_face_hit is_triangle_hit is_triangle_front_face_hit is_triangle_back_face_hit get_triangle_barycentrics
     get_curve_parameter get_cluster_id get_transform_list_size get_object_to_world_transform_matrix get_world_to_object_transform_matrix
@@ -132,6 +135,8 @@ class LaneDialect:
 
     def intrinsic(self, node: IntrinsicCall, arguments: tuple[str, ...]) -> Code:
         row = INTRINSICS[node.name]
+        if node.name.startswith(PAYLOAD_GETTER):
+            return Code(f"oxrt::payloadWord({self._names.trace}, {node.name.removeprefix(PAYLOAD_GETTER)})")
         if not self.varies(node) and row.state is State.THREAD and node.name not in _THREAD_LANES:
             return Code(f"{row.cpp}({', '.join([f'*{self._names.thread}.thread', *arguments])})")
         if row.state is State.NONE and not (node.name in _PER_LANE and self.varies(node)):
@@ -164,7 +169,7 @@ class LaneDialect:
         for parameter, node, text in zip(callee.function.parameters, nodes, arguments, strict=True):
             must_widen = parameter.local.name in callee.varying and not self.varies(node)
             texts.append(self._types.widened(text, node.type) if must_widen else text)
-        return f"{self._clones.name(callee)}({', '.join([*self._clones.hidden_arguments(callee, self._names, self.mask), *texts])})"
+        return f"{self._clones.callee_name(callee)}({', '.join([*self._clones.hidden_arguments(callee, self._names, self.mask), *texts])})"
 
 
 class LaneExpressions(Expressions):

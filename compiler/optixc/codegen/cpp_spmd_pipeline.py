@@ -1,7 +1,8 @@
 """The C++ file of a pipeline whose launch indices run 8 or 16 at a time.
 
-Any-hit and intersection programs stay scalar: Embree calls them for one ray at a time (`lanes_trace.h` says why); everything else is
-written over lanes. `spmd_obstacle` names what a pipeline uses that has no form over lanes yet; such a pipeline is emitted scalar.
+Any-hit and intersection programs are written twice: over lanes, and scalar for rays that are traced one by one (`lanes_trace.h` says
+when). Exception programs are scalar. `spmd_obstacle` names what a pipeline uses that has no form over lanes; such a pipeline is emitted
+scalar altogether.
 """
 
 from __future__ import annotations
@@ -13,51 +14,37 @@ from optixc.codegen.cpp_pipeline import PipelineFile, callees_first, structs_of
 from optixc.codegen.cpp_scalar import ScalarFunction
 from optixc.codegen.cpp_spmd import LaneFunction
 from optixc.codegen.cpp_spmd_clones import Clones, Key
+from optixc.codegen.cpp_spmd_expr import PAYLOAD_GETTER, PAYLOAD_SETTER
 from optixc.codegen.cpp_spmd_types import WideTypes
 from optixc.codegen.needs import options_of
-from optixc.codegen.program_classes import ProgramClass, payload_of, reachable_functions
+from optixc.codegen.program_classes import ProgramClass, known_flags, payload_of, reachable_functions, traces_of
 from optixc.ir.intrinsic_rows import INTRINSICS
 from optixc.ir.intrinsics import State
-from optixc.ir.nodes import CallCallable, CallIntrinsic, Function, IntrinsicCall, ParameterRole, Pipeline, Trace
+from optixc.ir.nodes import CallCallable, CallIntrinsic, Function, IntrinsicCall, ParameterRole, Pipeline, Trace, is_reference_type
 from optixc.ir.programs import ProgramKind
-from optixc.ir.types import Struct
+from optixc.ir.types import Struct, Void
 from optixc.ir.walk import expressions, statements
+from optixc.passes.callables import CallableSignature, callables_with, signatures_called
 from optixc.passes.features import Features
 from optixc.passes.uniformity import Clone
 
-_OVER_LANES = (ProgramKind.RAYGEN, ProgramKind.MISS, ProgramKind.CLOSESTHIT)
-_SCALAR = (ProgramKind.ANYHIT, ProgramKind.INTERSECTION)
-_PAYLOAD_WORDS = ("get_payload_", "set_payload_")
+_DISABLE_ANYHIT, _ENFORCE_ANYHIT, _CULL_ANY = 1, 2, 0xF0
+_ALSO_SCALAR = (ProgramKind.ANYHIT, ProgramKind.INTERSECTION)
 
 
 def spmd_obstacle(pipeline: Pipeline) -> str | None:
     """What keeps the pipeline from running over lanes, in the words of the report; None if nothing does."""
-    if pipeline.options.exception_flags:
-        return "exceptions"
+    for function in (*pipeline.programs, *pipeline.helpers):
+        names = [e.name for e in expressions(function.body) if isinstance(e, IntrinsicCall)]
+        names += [statement.name for statement in statements(function.body) if isinstance(statement, CallIntrinsic)]
+        traverses = any(isinstance(statement, Trace) and statement.name != "trace" for statement in statements(function.body))
+        if traverses or any(INTRINSICS[name].state is State.HIT_OBJECT for name in names):
+            return "hit objects"
     for program in pipeline.programs:
-        if program.kind not in (*_OVER_LANES, *_SCALAR):
-            return f"{program.kind.value.replace('_', ' ')} programs" if program.kind is not None else "a helper"
-        for function in reachable_functions(pipeline, program):
-            found = _obstacle_in(function, program.kind in _SCALAR)
-            if found is not None:
-                return found
-    return None
-
-
-def _obstacle_in(function: Function, is_scalar: bool) -> str | None:
-    names = [e.name for e in expressions(function.body) if isinstance(e, IntrinsicCall)]
-    for statement in statements(function.body):
-        if isinstance(statement, CallCallable):
-            return "callables"
-        if isinstance(statement, Trace) and statement.name != "trace":
-            return "hit objects"
-        if isinstance(statement, CallIntrinsic):
-            names.append(statement.name)
-    for name in names:
-        if INTRINSICS[name].state is State.HIT_OBJECT:
-            return "hit objects"
-        if not is_scalar and name.startswith(_PAYLOAD_WORDS):
-            return "payload registers by number"
+        if program.kind in _ALSO_SCALAR:
+            reached = (s for f in reachable_functions(pipeline, program) for s in statements(f.body))
+            if any(isinstance(statement, CallCallable) for statement in reached):
+                return "callables called by any-hit or intersection programs"
     return None
 
 
@@ -70,7 +57,7 @@ class SpmdFile(PipelineFile):
             self._scope.name(name)
         self._wide = WideTypes(self._types, structs_of(pipeline), pipeline.options.lanes)
         self._clones = Clones(pipeline, self._wide, self._signatures, self._scope)
-        self._by_name: dict[Key, Clone] = {}
+        self._throws = options_of(pipeline).traces_throw
 
     def text(self) -> str:
         order = self._functions_over_lanes()
@@ -83,12 +70,17 @@ class SpmdFile(PipelineFile):
         self._types.definitions(self._writer)
         self._wide.declarations(self._writer)
         self._wide.definitions(self._writer)
-        self._declarations()
+        self._declare_programs()
+        scalar = self._scalar_functions()
+        singly = self._traced_singly()
+        self._declare_functions([function for function in scalar if function.kind is None], ())
         for programs in self._classes.values():
             self._declare_lane_class(programs)
         options = options_of(self._pipeline)
-        for function in self._scalar_functions():
+        for function in scalar:
             ScalarFunction(self._writer, function, self._types, self._signatures, options).write()
+        for signature in signatures_called(self._pipeline):
+            self._writer.line(f"{self._callable_head(signature)};")
         for clone in order:
             if clone.function.kind is None:
                 self._writer.line(f"{self._clones.head(clone, self._signatures.inner_names(clone.function))};")
@@ -96,8 +88,11 @@ class SpmdFile(PipelineFile):
         for clone in order:
             LaneFunction(self._writer, clone, self._wide, self._clones, self._signatures, options).write()
         for programs in self._classes.values():
-            self._dispatch.define_class(replace(programs, closesthit=(), miss=()))
+            if programs in singly:
+                self._dispatch.define_class(replace(programs, closesthit=(), miss=()))
             self._define_lane_class(programs)
+        for signature in signatures_called(self._pipeline):
+            self._define_callable(signature)
         for program in self._pipeline.programs:
             if program.kind is ProgramKind.RAYGEN:
                 self._lane_entry(program)
@@ -123,16 +118,27 @@ class SpmdFile(PipelineFile):
             ordered[clone.key] = clone
 
         for program in self._pipeline.programs:
-            if program.kind in _OVER_LANES:
+            if program.kind is not ProgramKind.EXCEPTION:
                 visit(self._clones.analysis.program(program))
         return list(ordered.values())
 
     def _scalar_functions(self) -> list[Function]:
-        """Any-hit and intersection programs, and the helpers that they or uniform calls need."""
-        programs = [program for program in self._pipeline.programs if program.kind in _SCALAR]
+        """Any-hit, intersection and exception programs, and the helpers that they or uniform calls need."""
+        single = {p.name for programs in self._traced_singly() for p in (*programs.anyhit, *programs.intersection)}
+        throwing = {p.name for p in self._pipeline.programs if p.kind is ProgramKind.EXCEPTION and self._throws}
+        programs = [program for program in self._pipeline.programs if program.name in single | throwing]
         needed = {f.name for program in programs for f in reachable_functions(self._pipeline, program)} | set(self._clones.scalar)
         helpers = [helper for helper in callees_first(self._pipeline.helpers) if helper.name in needed]
         return [*helpers, *programs]
+
+    def _traced_singly(self) -> list[ProgramClass]:
+        """The classes of which some trace may go ray by ray: those whose candidates on triangles may be judged."""
+        filtered = {
+            trace.payload_type
+            for _, trace in traces_of(self._pipeline)
+            if _filters(known_flags(trace), bool(self._classes[trace.payload_type].anyhit))
+        }
+        return [programs for payload, programs in self._classes.items() if payload in filtered]
 
     # ---- classes of programs -------------------------------------------------------------------------------------------------
 
@@ -142,6 +148,8 @@ class SpmdFile(PipelineFile):
         with self._writer.block(f"struct {name}Lanes : oxrt::NoLanePrograms", tail="};"):
             self._writer.line(f"using Scalar = {name};")
             self._writer.line(f"using Payload = {payload};")
+            if any(_uses_payload_words(self._pipeline, program) for _, functions in _present(programs) for program in functions):
+                self._writer.line("static constexpr bool usesPayloadWords = true;")
             for kind, _ in _present(programs):
                 self._writer.line(f"static void {FUNCTIONS[kind]}(Rays& trace, Mask mask, Payload& payload);")
         self._writer.line()
@@ -149,10 +157,10 @@ class SpmdFile(PipelineFile):
     def _define_lane_class(self, programs: ProgramClass) -> None:
         owner = f"{self._signatures.program_class(programs.payload)}Lanes"
         for kind, functions in _present(programs):
-            calls = [(function, self._lane_call(function, programs.payload)) for function in functions]
+            calls = [(function, self._lane_call(function, programs.payload, owner)) for function in functions]
             payload = "Payload& payload" if any("payload" in call for _, call in calls) else "Payload&"
             with self._writer.block(f"void {owner}::{FUNCTIONS[kind]}(Rays& trace, Mask mask, {payload})"):
-                self._writer.line(f"const Wide<int32_t> program = oxrt::recordPrograms(trace, mask, {SLOTS[kind]});")
+                self._writer.line(f"const Wide<int32_t> program = oxrt::recordPrograms(trace.records, mask, {SLOTS[kind]});")
                 for function, call in calls:
                     self._writer.line(f"if (const Mask own = mask & (program == int32_t({self._dispatch.number(function)})); oxrt::any(own))")
                     with self._writer.indented():
@@ -162,7 +170,7 @@ class SpmdFile(PipelineFile):
                     self._writer.line(f"oxrt::payloadMismatch(trace, mask & !({known} | (program == int32_t(OXRT_NO_PROGRAM))));")
             self._writer.line()
 
-    def _lane_call(self, program: Function, payload: Struct | None) -> str:
+    def _lane_call(self, program: Function, payload: Struct | None, owner: str) -> str:
         clone = self._clones.analysis.program(program)
         arguments = ["trace" if self._signatures.needs(program.name).ray else "*trace.thread", "own"]
         own = payload_of(program)
@@ -175,9 +183,55 @@ class SpmdFile(PipelineFile):
                 case ParameterRole.ATTRIBUTES:
                     arguments.append(f"oxrt::getAttributes<{type_}>(trace)")
                 case ParameterRole.RECORD:
-                    arguments.append(f"oxrt::loadRecord<{type_}>(trace, own)")
+                    arguments.append(f"oxrt::loadRecord<{type_}>(trace.records, own)")
                 case ParameterRole.VALUE:
                     raise AssertionError(f"{program.name} has an ordinary parameter")
+        template = f"<{owner}>" if self._signatures.needs(program.name).programs else ""
+        return f"{self._clones.name(clone)}{template}({', '.join(arguments)})"
+
+    # ---- callables -----------------------------------------------------------------------------------------------------------
+
+    def _callable_head(self, signature: CallableSignature) -> str:
+        name = self._signatures.dispatcher_of(signature)
+        arguments = ["Lanes& thread", "Mask mask", "Wide<uint32_t> index"]
+        for position, type_ in enumerate(signature.arguments):
+            text = self._wide.name(type_, True)
+            arguments.append(f"{text}& a{position}" if is_reference_type(type_) else f"const {text}& a{position}")
+        return f"{self._wide.name(signature.result, True)} {name}_lanes({', '.join(arguments)})"
+
+    def _define_callable(self, signature: CallableSignature) -> None:
+        """Runs the callables of the records that the lanes name; lanes without one get zero, and a fault in validation."""
+        slot = 0 if signature.is_direct else 1
+        is_void = isinstance(signature.result, Void)
+        with self._writer.block(self._callable_head(signature)):
+            if not is_void:
+                result = self._types.name(signature.result)
+                self._writer.line(f"{self._wide.name(signature.result, True)} result = oxrt::spread<LANES>({result}{{}});")
+            self._writer.line("oxrt::RecordLanes<LANES> records;")
+            self._writer.line(f"const Mask found = oxrt::findCallables(thread, records, mask, index, {slot});")
+            with self._writer.block("if (oxrt::none(found))"):
+                self._writer.line("return;" if is_void else "return result;")
+            self._writer.line(f"const Wide<int32_t> program = oxrt::recordPrograms(records, found, {slot});")
+            for program in callables_with(self._pipeline, signature):
+                call = self._callable_call(program)
+                number = self._dispatch.number(program)
+                self._writer.line(f"if (const Mask own = found & (program == int32_t({number})); oxrt::any(own))")
+                with self._writer.indented():
+                    self._writer.line(f"{call};" if is_void else f"oxrt::assign(own, result, {call});")
+            if not is_void:
+                self._writer.line("return result;")
+        self._writer.line()
+
+    def _callable_call(self, program: Function) -> str:
+        clone = self._clones.analysis.program(program)
+        arguments = ["thread", "own"]
+        position = 0
+        for parameter in program.parameters:
+            if parameter.role is ParameterRole.RECORD:
+                arguments.append(f"oxrt::loadRecord<{self._types.name(parameter.local.type)}>(records, own)")
+            else:
+                arguments.append(f"a{position}")
+                position += 1
         return f"{self._clones.name(clone)}({', '.join(arguments)})"
 
     # ---- launches ------------------------------------------------------------------------------------------------------------
@@ -193,7 +247,20 @@ class SpmdFile(PipelineFile):
         with self._writer.block(f"void run_{self._signatures.function(program.name)}(OxrtThread* thread, const OxrtTile* tile)"):
             with self._writer.block(f"oxrt::runBlocks<LANES>(*thread, *tile, [{'thread' if records else ''}](Lanes& lanes, Mask mask)", tail="});"):
                 self._writer.line(f"{self._clones.name(clone)}({', '.join(['lanes', 'mask', *records])});")
+                if self._throws:
+                    self._run_exceptions()
         self._writer.line()
+
+    def _run_exceptions(self) -> None:
+        """Behind the program: lanes that threw run the exception program of the SBT, one by one."""
+        exceptions = [p for p in self._pipeline.programs if p.kind is ProgramKind.EXCEPTION]
+        with self._writer.block("oxrt::eachLane(lanes.thrown, [&](int lane)", tail="});"):
+            self._writer.line("OxrtThread* thread = &oxrt::throwingLane(lanes, lane);")
+            with self._writer.block("switch (oxrt::takeException(*thread))"):
+                for program in exceptions:
+                    call = self._call(program, "thread->launch->exceptionRecord")
+                    self._writer.line(f"case {self._dispatch.number(program)}: {call}; break;")
+                self._writer.line("default: break;")
 
     def _variant(self) -> str:
         lanes = self._pipeline.options.lanes
@@ -202,7 +269,30 @@ class SpmdFile(PipelineFile):
 
 
 def _present(programs: ProgramClass) -> list[tuple[ProgramKind, tuple[Function, ...]]]:
-    kinds = ((ProgramKind.CLOSESTHIT, programs.closesthit), (ProgramKind.MISS, programs.miss))
+    kinds = (
+        (ProgramKind.CLOSESTHIT, programs.closesthit),
+        (ProgramKind.ANYHIT, programs.anyhit),
+        (ProgramKind.INTERSECTION, programs.intersection),
+        (ProgramKind.MISS, programs.miss),
+    )
     return [(kind, functions) for kind, functions in kinds if functions]
 
 
+
+
+def _filters(flags: int | None, has_anyhit: bool) -> bool:
+    """Whether a trace with these flags (None: not known) may call the filter of built-in primitives: see FlagTraits."""
+    if flags is None:
+        return True
+    runs_anyhit = bool(flags & _ENFORCE_ANYHIT) or not flags & _DISABLE_ANYHIT
+    return bool(flags & _CULL_ANY) or (has_anyhit and runs_anyhit)
+
+
+def _uses_payload_words(pipeline: Pipeline, program: Function) -> bool:
+    """Whether the program or a helper addresses payload registers by number."""
+    for function in reachable_functions(pipeline, program):
+        names = [e.name for e in expressions(function.body) if isinstance(e, IntrinsicCall)]
+        names += [statement.name for statement in statements(function.body) if isinstance(statement, CallIntrinsic)]
+        if any(name.startswith((PAYLOAD_GETTER, PAYLOAD_SETTER)) for name in names):
+            return True
+    return False

@@ -12,7 +12,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 from optixc.ir.intrinsic_rows import INTRINSICS
-from optixc.ir.intrinsics import State
+from optixc.ir.intrinsics import Effect, State
 from optixc.ir.nodes import (
     Assign,
     Break,
@@ -35,10 +35,11 @@ from optixc.ir.nodes import (
     is_reference_type,
 )
 from optixc.ir.programs import ProgramKind
-from optixc.ir.walk import Body, blocks, operands, place_root
+from optixc.ir.walk import Body, blocks, operands, place_root, statements
 from optixc.passes.regions import Region, homes
 
 _VARYING_OF_THREAD = frozenset({"get_launch_index", "get_exception_code", *(f"get_exception_detail_{i}" for i in range(8))})
+_REPORT = "report_intersection"
 _VARYING_STATES = frozenset({State.RAY, State.HIT_OBJECT})
 
 
@@ -68,8 +69,10 @@ class Clone:
 class UniformityAnalysis:
     """Clones of the functions of one pipeline, made when asked for."""
 
-    def __init__(self, helpers: Mapping[str, Function]) -> None:
+    def __init__(self, helpers: Mapping[str, Function], may_throw: bool) -> None:
         self._helpers = helpers
+        self._may_throw = may_throw
+        self._leaving: dict[str, bool] = {}
         self._clones: dict[tuple[str, tuple[bool, ...]], Clone] = {}
         self._unfinished: set[tuple[str, tuple[bool, ...]]] = set()
 
@@ -92,6 +95,26 @@ class UniformityAnalysis:
             if after == arguments:
                 return clone
             arguments = after
+
+    def leaves(self, statement: Stmt) -> bool:
+        """Whether lanes may leave the program in a call: by ending it, or by an exception."""
+        match statement:
+            case Trace() | CallCallable():
+                return self._may_throw
+            case CallIntrinsic(name=name):
+                if INTRINSICS[name].effect is Effect.ENDS_LAUNCH_INDEX:
+                    return self._may_throw
+                return INTRINSICS[name].effect is Effect.ENDS_PROGRAM or name == _REPORT
+            case CallHelper(function=function):
+                return self._helper_leaves(function)
+            case _:
+                return False
+
+    def _helper_leaves(self, name: str) -> bool:
+        if name not in self._leaving:
+            self._leaving[name] = False
+            self._leaving[name] = any(self.leaves(statement) for statement in statements(self._helpers[name].body))
+        return self._leaving[name]
 
     def varies(self, expression: Expr, clone: Clone) -> bool:
         """Whether lanes may have different values of an expression of the clone's function."""
@@ -172,6 +195,9 @@ class _FunctionAnalysis:
                     self._store(payload, True, path)
             case _:
                 pass
+        if self._analysis.leaves(statement):
+            self._clone.exits.add(id(statement))
+            self._return_apart(path)
         for block in blocks(statement):
             self._body(block, (*path, statement))
 
@@ -210,15 +236,19 @@ class _FunctionAnalysis:
     def _returns(self, value: Expr | None, path: Region) -> None:
         apart = any(id(owner) in self._clone.divergent for owner in path)
         if apart:
-            for owner in path:
-                if isinstance(owner, While | ForRange):
-                    self._diverges(owner)
-            self._mark_exits(path)
-            if not self._clone.returns_apart:
-                self._clone.returns_apart = True
-                self._changed = True
+            self._return_apart(path)
         if (apart or (value is not None and self.varies(value))) and not self._clone.result_varies:
             self._clone.result_varies = True
+            self._changed = True
+
+    def _return_apart(self, path: Region) -> None:
+        """Some lanes leave the function here and others stay."""
+        for owner in path:
+            if isinstance(owner, While | ForRange):
+                self._diverges(owner)
+        self._mark_exits(path)
+        if not (self._clone.returns_apart and self._clone.result_varies):
+            self._clone.returns_apart = self._clone.result_varies = True
             self._changed = True
 
     def _mark_exits(self, owners: Region) -> None:

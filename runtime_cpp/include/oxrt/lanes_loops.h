@@ -2,7 +2,7 @@
 #ifndef OXRT_LANES_LOOPS_H
 #define OXRT_LANES_LOOPS_H
 
-#include <oxrt/lanes_ray.h>
+#include <oxrt/lanes_records.h>
 
 namespace oxrt {
 inline namespace OXRT_ISA {
@@ -25,7 +25,7 @@ template <class T, int W> struct RangeLanes {
             stride = select(isDown, 0u - stride, stride);
             runs = runs | (isDown & (start > stop));
         }
-        if (all(!runs | (stride == 1u)))
+        if (none(runs & (stride != 1u)))
             turns = select(runs, distance, 0u);
         else
             turns = select(runs, floorDivide(distance - 1u, select(runs, stride, 1u)) + 1u, 0u);
@@ -100,6 +100,28 @@ template <int W> OXRT_INLINE void payloadMismatch(RayLanes<W>& ray, Lanes<bool, 
         payloadMismatch(ray.thread->atLane(firstLane(mask)));
 }
 
+/* ---- exceptions --------------------------------------------------------------------------------------------------------------- */
+
+/* Ends the launch indices of the mask; these lanes return, and so do all callers in them. */
+template <int W, class... Detail>
+OXRT_INLINE void throwException(LanesThread<W>& thread, Lanes<bool, W> mask, const char* line, Wide<int32_t, W> code, Detail... details) {
+    thread.thrown |= mask;
+    thread.exceptionCode = select(mask, code, thread.exceptionCode);
+    thread.exceptionLine = line;
+    int next = 0;
+    ((thread.exceptionDetails[next] = select(mask, Lanes<uint32_t, W>(details), thread.exceptionDetails[next]), ++next), ...);
+}
+
+/* Makes the exception of one lane that of the scalar thread. */
+template <int W> OXRT_INLINE OxrtThread& throwingLane(const LanesThread<W>& thread, int lane) {
+    OxrtThread& scalar = thread.atLane(lane);
+    scalar.exceptionCode = thread.exceptionCode[lane];
+    for (int i = 0; i < 8; ++i)
+        scalar.exceptionDetails[i] = thread.exceptionDetails[i][lane];
+    scalar.exceptionLine = thread.exceptionLine;
+    return scalar;
+}
+
 /* ---- payloads and attributes -------------------------------------------------------------------------------------------------- */
 
 /* A wide payload seen as another class with the same words, for the duration of a call. */
@@ -119,7 +141,9 @@ private:
         for (int lane = 0; lane < W; ++lane) {
             A words;
             extractLane(words, from, lane);
-            insertLane(to, bitCopy<B>(words), lane);
+            B same;
+            __builtin_memcpy(&same, &words, sizeof(same));
+            insertLane(to, same, lane);
         }
     }
 };

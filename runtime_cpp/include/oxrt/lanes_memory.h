@@ -141,12 +141,16 @@ template <int W, class Shape, class... I> OXRT_INLINE Lanes<uint64_t, W> longOff
 
 /* The lanes whose indices are inside of the array. */
 template <int W, class T, int RANK, class... I> OXRT_INLINE Lanes<bool, W> inside(const Array<T, RANK>& array, I... indices) {
+    Lanes<bool, W> result = true;
     int axis = 0;
-    return ((Lanes<uint64_t, W>(longIndex(indices)) < Lanes<uint64_t, W>(array.shape[axis++])) & ...);
+    ((result = result & (Lanes<uint64_t, W>(longIndex(indices)) < Lanes<uint64_t, W>(array.shape[axis])), ++axis), ...);
+    return result;
 }
 template <int W, class A, class... I> OXRT_INLINE Lanes<bool, W> inside(const VaryingArray<A, W>& array, I... indices) {
+    Lanes<bool, W> result = true;
     int axis = 0;
-    return ((Lanes<uint64_t, W>(longIndex(indices)) < array.shape[axis++]) & ...);
+    ((result = result & (Lanes<uint64_t, W>(longIndex(indices)) < array.shape[axis]), ++axis), ...);
+    return result;
 }
 
 /* Calls f with the places of the elements. */

@@ -19,6 +19,7 @@ template <int W> struct LanesThread {
     Lanes<bool, W> thrown; /* lanes that threw an exception and run no further */
     Lanes<int32_t, W> exceptionCode;
     Lanes<uint32_t, W> exceptionDetails[8];
+    const char* exceptionLine;
 
     /* Makes the scalar thread stand for one lane: before faults and scalar programs. */
     OXRT_INLINE OxrtThread& atLane(int lane) const {
@@ -59,10 +60,18 @@ template <> struct Packet<16> {
     }
 };
 
-/* One trace of all lanes. Rays and hits stay in Embree's packet; what is derived from them is computed where it is read. */
+/* Where the SBT record of each lane is. */
+template <int W> struct RecordLanes {
+    const OxrtRecordHeader* common; /* the one of all lanes, null if they differ */
+    WordPlaces<W> places;           /* else each lane's */
+};
+
+/* One trace of all lanes, or the candidates that a callback judges. Rays and hits stay in Embree's packet; what is derived from them is
+   computed where it is read. */
 template <int W> struct RayLanes {
     typename Packet<W>::RayHit& packet; /* not a member: Embree sees its address, and nothing else of the ray */
     LanesThread<W>* thread;
+    void* payload;
     const OxrtTraversableView* root;
     Lanes<float, W> tmin, tmax;
     Lanes<float, W> t; /* what getRayTmax gives */
@@ -72,10 +81,12 @@ template <int W> struct RayLanes {
     Lanes<bool, W> active; /* the lanes that hit something, or missed */
     const OxrtInstanceView* commonInstance; /* if all active lanes hit one geometry: its instance or null */
     const OxrtGeometry* commonGeometry;     /* ... and itself, else null */
-    const OxrtRecordHeader* commonRecord;   /* the record of all active lanes, null if they differ */
-    WordPlaces<W> records;                  /* else where each lane's record is */
-    Lanes<uint32_t, W> kind;                /* of custom primitives */
+    RecordLanes<W> records;
+    Lanes<uint32_t, W> kind; /* of custom primitives */
     Lanes<uint32_t, W> attributes[8];
+    /* payload registers by number, where programs use them */
+    Lanes<uint32_t, W> (*readWord)(const void* payload, int index) = nullptr;
+    void (*writeWord)(void* payload, int index, Lanes<bool, W> mask, Lanes<uint32_t, W> words) = nullptr;
 
     OXRT_INLINE explicit RayLanes(typename Packet<W>::RayHit& rays) : packet(rays) {}
 };
@@ -91,11 +102,25 @@ template <int W> OXRT_INLINE Wide<float3, W> getWorldRayDirection(const RayLanes
     const auto& r = ray.packet.ray;
     return {packetLanes<W>(r.dir_x), packetLanes<W>(r.dir_y), packetLanes<W>(r.dir_z)};
 }
+template <int W> OXRT_INLINE Lanes<uint32_t, W> payloadWord(const RayLanes<W>& ray, int index) { return ray.readWord(ray.payload, index); }
+template <int W> OXRT_INLINE void setPayloadWord(RayLanes<W>& ray, Lanes<bool, W> mask, int index, Wide<uint32_t, W> words) {
+    ray.writeWord(ray.payload, index, mask, words);
+}
 template <int W> OXRT_INLINE Lanes<float, W> getRayTmin(const RayLanes<W>& ray) { return ray.tmin; }
 template <int W> OXRT_INLINE Lanes<float, W> getRayTmax(const RayLanes<W>& ray) { return ray.t; }
 template <int W> OXRT_INLINE Lanes<float, W> getRayTime(const RayLanes<W>& ray) { return packetLanes<W>(ray.packet.ray.time); }
 template <int W> OXRT_INLINE Lanes<uint32_t, W> getRayFlags(const RayLanes<W>& ray) { return ray.flags; }
 template <int W> OXRT_INLINE Lanes<uint32_t, W> getRayVisibilityMask(const RayLanes<W>& ray) { return ray.mask; }
+
+/* ---- neighbours of floats: see nextUp of scalars ---------------------------------------------------------------------------- */
+
+template <int W> OXRT_INLINE Lanes<float, W> nextUp(Lanes<float, W> x) {
+    const Lanes<uint32_t, W> bits = floatAsUint(x);
+    const Lanes<float, W> away = uintAsFloat(select(x > 0.0f, bits + 1u, bits - 1u));
+    const Lanes<float, W> next = select(abs(x) < __FLT_MIN__, __FLT_MIN__, away);
+    return select(x < __builtin_inff(), next, x);
+}
+template <int W> OXRT_INLINE Lanes<float, W> nextDown(Lanes<float, W> x) { return -nextUp(-x); }
 
 /* ---- where the hits are ------------------------------------------------------------------------------------------------------- */
 

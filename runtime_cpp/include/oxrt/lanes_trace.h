@@ -1,27 +1,20 @@
 /* Tracing W rays at once: the query, the records of the hits, the dispatch of programs; and the blocks of a launch.
  *
  * `Programs` is what the pipeline emits for each payload class: masked programs over lanes, and as `Scalar` the scalar Programs of
- * device_trace.h. Traces that need no callback go to Embree as packets, COHERENT where the rays start at one point in about one direction;
- * with any-hit or intersection programs each lane is traced on its own, with the scalar programs as callbacks (packets with rejecting
- * callbacks are slower; so are divergent custom primitives).
+ * device_trace.h. Rays go to Embree as packets, COHERENT where they start at one point in about one direction, with any-hit and
+ * intersection programs over lanes as callbacks. Divergent rays with any-hit programs on triangles are traced one by one with the scalar
+ * programs: candidates come in another order for each lane, and packets with rejecting filters are slower (measured: README).
  */
 #ifndef OXRT_LANES_TRACE_H
 #define OXRT_LANES_TRACE_H
 
-#include <oxrt/lanes_loops.h>
+#include <oxrt/lanes_candidate.h>
 
 namespace oxrt {
 inline namespace OXRT_ISA {
 
-/* What the emitted programs over lanes of a payload class override. */
-struct NoLanePrograms {
-    using Scalar = NoPrograms;
-    using Payload = NoPayload;
-};
-
 /* ---- queries ------------------------------------------------------------------------------------------------------------------ */
 
-/* See device_ray.h: next to zero stands the smallest normal number. */
 template <class T, int W> OXRT_INLINE void setPacket(T (&values)[W], Lanes<T, W> lanes) { storeLanes<T, W>(values, lanes); }
 template <int W> OXRT_INLINE void setPacket(unsigned (&values)[W], uint32_t value) { storeLanes<uint32_t, W>(values, Lanes<uint32_t, W>(value)); }
 
@@ -53,6 +46,81 @@ template <class Flags, bool ANY, int W> OXRT_INLINE Lanes<bool, W> traversePacke
         Packet<W>::intersect(services, valid, ray.root->scene, ray.packet, &arguments);
         ray.t = packetLanes<W>(ray.packet.ray.tfar);
         return mask & (packetLanes<W>(ray.packet.hit.geomID) != RTC_INVALID_GEOMETRY_ID);
+    }
+}
+
+/* Prepares the candidates of a trace with callbacks: the world's rays, and nothing found yet. */
+template <int W> OXRT_INLINE void beginCandidates(CandidateLanes<W>& candidates, const RayLanes<W>& ray, void* payload) {
+    candidates.thread = ray.thread;
+    candidates.payload = payload;
+    candidates.readWord = ray.readWord;
+    candidates.writeWord = ray.writeWord;
+    candidates.root = ray.root;
+    candidates.tmin = ray.tmin;
+    candidates.tmax = ray.tmax;
+    candidates.mask = ray.mask;
+    candidates.sbtOffset = ray.sbtOffset;
+    candidates.sbtStride = ray.sbtStride;
+    candidates.flags = ray.flags;
+    candidates.ended = false;
+    candidates.isTerminated = false;
+    candidates.closest = ray.tmax;
+    candidates.closestInEmbree = packetLanes<W>(ray.packet.ray.tfar);
+    auto& world = candidates.packet.ray;
+    const auto& own = ray.packet.ray;
+    __builtin_memcpy(world.org_x, own.org_x, sizeof(own.org_x));
+    __builtin_memcpy(world.org_y, own.org_y, sizeof(own.org_y));
+    __builtin_memcpy(world.org_z, own.org_z, sizeof(own.org_z));
+    __builtin_memcpy(world.dir_x, own.dir_x, sizeof(own.dir_x));
+    __builtin_memcpy(world.dir_y, own.dir_y, sizeof(own.dir_y));
+    __builtin_memcpy(world.dir_z, own.dir_z, sizeof(own.dir_z));
+    __builtin_memcpy(world.time, own.time, sizeof(own.time));
+}
+
+/* The masked lanes as one packet whose candidates the programs judge; the lanes that hit something. */
+template <class Programs, class Flags, bool ANY, int W>
+__attribute__((noinline)) Lanes<bool, W> traverseCandidates(RayLanes<W>& ray, Lanes<bool, W> mask, void* payload, bool isCoherent) {
+    using Scalar = typename Programs::Scalar;
+    using Known = FlagTraits<Flags>;
+    typename Packet<W>::RayHit worlds;
+    CandidateLanes<W> candidates(worlds);
+    beginCandidates(candidates, ray, payload);
+    QueryLanes<W> query = {{{RTC_INVALID_GEOMETRY_ID}, {RTC_INVALID_GEOMETRY_ID}}, &candidates};
+    alignas(4 * W) int valid[W];
+    storeLanes<int32_t, W>(valid, select(mask, int32_t(-1), int32_t(0)));
+    const OxrtServices& services = *ray.thread->thread->launch->services;
+    unsigned flags = isCoherent ? RTC_RAY_QUERY_FLAG_COHERENT : RTC_RAY_QUERY_FLAG_INCOHERENT;
+    RTCFilterFunctionN filter = nullptr;
+    if constexpr (Known::mayCull || (Scalar::hasAnyHit && Known::mayRunAnyHit)) {
+        if (mayFilter<Scalar>(ray.flags))
+            filter = filterCandidates<Programs, Known::mayCull, W>;
+        if (filtersEverything<Scalar>(ray.flags, *ray.root))
+            flags |= RTC_RAY_QUERY_FLAG_INVOKE_ARGUMENT_FILTER;
+    }
+    auto& packet = ray.packet;
+    if constexpr (ANY) {
+        RTCOccludedArguments arguments = {flags, RTC_FEATURE_FLAG_ALL, &query.context, filter, nullptr, 0.0f};
+        if constexpr (Scalar::hasIntersection)
+            arguments.occluded = occludeCustoms<Programs, W>;
+        Packet<W>::occluded(services, valid, ray.root->scene, packet, &arguments);
+        return mask & (candidates.isTerminated | (packetLanes<W>(packet.ray.tfar) < 0.0f));
+    } else {
+        RTCIntersectArguments arguments = {flags, RTC_FEATURE_FLAG_ALL, &query.context, filter, nullptr, 0.0f};
+        if constexpr (Scalar::hasIntersection)
+            arguments.intersect = intersectCustoms<Programs, W>;
+        setPacket<W>(packet.hit.geomID, RTC_INVALID_GEOMETRY_ID);
+        setPacket<W>(packet.hit.instID[0], RTC_INVALID_GEOMETRY_ID);
+        Packet<W>::intersect(services, valid, ray.root->scene, packet, &arguments);
+        const Lanes<float, W> tfar = packetLanes<W>(packet.ray.tfar);
+        Lanes<bool, W> isOwn = candidates.isTerminated;
+        if constexpr (Scalar::hasIntersection) {
+            isOwn |= tfar == candidates.closestInEmbree;
+            ray.kind = candidates.committedKind;
+            for (int i = 0; i < 8; ++i)
+                ray.attributes[i] = candidates.committedAttributes[i];
+        }
+        ray.t = select(isOwn, candidates.closest, tfar);
+        return mask & (packetLanes<W>(packet.hit.geomID) != RTC_INVALID_GEOMETRY_ID);
     }
 }
 
@@ -135,6 +203,7 @@ template <int W> void takeException(LanesThread<W>& thread, int lane) {
     thread.exceptionCode.set(lane, scalar.exceptionCode);
     for (int i = 0; i < 8; ++i)
         thread.exceptionDetails[i].set(lane, scalar.exceptionDetails[i]);
+    thread.exceptionLine = scalar.exceptionLine;
     scalar.exceptionPending = 0;
 }
 
@@ -146,10 +215,15 @@ OXRT_INLINE Lanes<bool, W> traverse(RayLanes<W>& ray, Lanes<bool, W> mask, typen
     if constexpr (!hasCallbacks<Scalar, Flags>)
         return traversePacket<Flags, ANY>(ray, mask, isCoherent);
     else {
-        constexpr bool onlyIntersection = !FlagTraits<Flags>::mayCull && !(Scalar::hasAnyHit && FlagTraits<Flags>::mayRunAnyHit);
-        if (onlyIntersection && !(ray.root->needs & OXRT_SCENE_HAS_CUSTOM))
+        constexpr bool filters = FlagTraits<Flags>::mayCull || (Scalar::hasAnyHit && FlagTraits<Flags>::mayRunAnyHit);
+        const bool hasCustom = ray.root->needs & OXRT_SCENE_HAS_CUSTOM;
+        const bool mayCall = (Scalar::hasIntersection && hasCustom) || (filters && mayFilter<Scalar>(ray.flags));
+        if (!mayCall)
             return traversePacket<Flags, ANY>(ray, mask, isCoherent);
-        return traverseLanes<Programs, Flags, ANY>(ray, mask, payload);
+        if constexpr (filters)
+            if (!isCoherent && !hasCustom)
+                return traverseLanes<Programs, Flags, ANY>(ray, mask, payload);
+        return traverseCandidates<Programs, Flags, ANY>(ray, mask, &payload, isCoherent);
     }
 }
 
@@ -157,7 +231,7 @@ template <class Programs, int W> OXRT_INLINE void runMisses(RayLanes<W>& ray, La
     const OxrtLaunch& launch = *ray.thread->thread->launch;
     ray.t = ray.tmax;
     ray.active = mask;
-    const Lanes<bool, W> found = enterRecords(ray, mask, launch.missRecords, launch.missStride, launch.missCount, ray.missIndex);
+    const Lanes<bool, W> found = findRecords(ray.records, launch, mask, launch.missRecords, launch.missStride, launch.missCount, ray.missIndex);
     if constexpr (Programs::Scalar::isValidated)
         fault(*ray.thread, mask & (ray.missIndex >= launch.missCount), OXRT_FAULT_MISS_SBT,
               "miss_sbt_index is not below the number of miss records", place);
@@ -166,7 +240,7 @@ template <class Programs, int W> OXRT_INLINE void runMisses(RayLanes<W>& ray, La
 }
 
 template <class Programs, int W> OXRT_INLINE void runClosestHits(RayLanes<W>& ray, typename Programs::Payload& payload, Place place) {
-    const Lanes<bool, W> found = enterHitRecords(ray);
+    const Lanes<bool, W> found = findHitRecords(ray);
     if constexpr (Programs::Scalar::isValidated)
         fault(*ray.thread, without(ray.active, found), OXRT_FAULT_HIT_SBT, "the hit needs a record behind the end of the hit group records", place);
     if (any(found)) {
@@ -224,6 +298,11 @@ OXRT_INLINE void trace(LanesThread<W>& thread, Lanes<bool, W> mask, uint64_t han
     typename Packet<W>::RayHit rays;
     RayLanes<W> ray(rays);
     ray.thread = &thread;
+    ray.payload = &payload;
+    if constexpr (Programs::usesPayloadWords) {
+        ray.readWord = readPayloadWord<typename Scalar::Payload, W>;
+        ray.writeWord = writePayloadWord<typename Scalar::Payload, W>;
+    }
     ray.root = findTraversable(*thread.thread->launch, handle);
     auto& packet = rays.ray;
     setPacket(packet.org_x, origin.x);
