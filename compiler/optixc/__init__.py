@@ -16,6 +16,7 @@ from optixc.enums import *  # noqa: F403
 from optixc.errors import *  # noqa: F403
 from optixc.host.accel import Accel
 from optixc.host.annotations import Array, Array2, Array3, FixedArray, Texture, Traversable
+from optixc.host.bound_values import BoundValue
 from optixc.host.context import OptixcWarning
 from optixc.host.groups import Module, Program, ProgramGroup, Record
 from optixc.host.image import read_image, write_image
@@ -72,6 +73,7 @@ __all__ = [
     "Array",
     "Array2",
     "Array3",
+    "BoundValue",
     "BuildInputCustomPrimitives",
     "BuildInputInstances",
     "BuildInputTriangles",

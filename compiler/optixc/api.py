@@ -13,11 +13,12 @@ from optixc.enums_program import ProgramGroupKind
 from optixc.enums_scene import BuildFlags
 from optixc.errors import InvalidValueError
 from optixc.host.accel import Accel
-from optixc.host.context import LOG_WARNING, Context, LogCallback
+from optixc.host.bound_values import NO_ANNOTATION, merge, plain_values
+from optixc.host.context import LOG_PRINT, LOG_WARNING, Context, LogCallback
 from optixc.host.groups import Module, Program, ProgramGroup
 from optixc.host.inputs import BuildInput, MotionOptions
 from optixc.host.pipeline import Pipeline
-from optixc.options import BoundValue, CompileOptions, PipelineCompileOptions, Simd
+from optixc.options import CompileOptions, PipelineCompileOptions, Simd
 
 _Slot = Program | None
 
@@ -40,14 +41,23 @@ class DeviceContext(Context):
         super().__init__(validation, log_callback, threads)
         self.cache = Cache(Path(cache_dir) if cache_dir is not None else None, lambda text: self.log(LOG_WARNING, "cache", text))
 
-    def module_create(self, source: ModuleType | str | Path | Sequence[Any], *, include_dirs: Sequence[str | Path] = ()) -> Module:
+    def module_create(
+        self,
+        source: ModuleType | str | Path | Sequence[Any],
+        *,
+        include_dirs: Sequence[str | Path] = (),
+        bound_values: Mapping[str, Any] | None = None,
+    ) -> Module:
         """The programs of a Python module or shader file (parsed, never run), or of a list of live functions.
 
-        Raises CompileError with every error that the shader has, FileIoError for a file that cannot be read.
+        `bound_values` are those of the pipelines that the module becomes part of. Raises CompileError with every error that the shader
+        has, FileIoError for a file that cannot be read.
         """
         _ = self.handle
+        values = plain_values(bound_values)
         unit = self._open(source, [Path(folder) for folder in include_dirs])
-        return Module(unit, unit.programs)
+        driver.check_bound_values(unit, {name: bound.value for name, bound in values.items()})
+        return Module(unit, unit.programs, values)
 
     def _open(self, source: Any, include_dirs: list[Path]) -> driver.Unit:
         if isinstance(source, ModuleType):
@@ -73,7 +83,7 @@ class DeviceContext(Context):
         max_trace_depth: int = 1,
         *,
         options: PipelineCompileOptions | None = None,
-        bound_values: Mapping[str, BoundValue] | None = None,
+        bound_values: Mapping[str, Any] | None = None,
         simd: Simd = "auto",
         math: str = "precise",
         debug: bool = False,
@@ -92,7 +102,9 @@ class DeviceContext(Context):
         if not any(group.kind is ProgramGroupKind.RAYGEN for group in groups):
             raise InvalidValueError("a pipeline needs a raygen group: nothing else can begin a launch")
         used = list(dict.fromkeys(program for group in groups for program in group.programs.values()))
-        units = list(dict.fromkeys(program.module.unit for program in used))
+        modules = list({id(program.module): program.module for program in used}.values())
+        units = list(dict.fromkeys(module.unit for module in modules))
+        bound = merge([*((module.unit.name, module.bound_values) for module in modules), ("pipeline_create", plain_values(bound_values))])
         chosen = CompileOptions(
             pipeline=options or PipelineCompileOptions(),
             max_trace_depth=max_trace_depth,
@@ -100,9 +112,12 @@ class DeviceContext(Context):
             math=math,
             debug=debug,
             validation=self.validation,
-            bound_values=dict(bound_values or {}),
+            bound_values={name: one.value for name, one in bound.items()},
         )
         built = driver.build(units, [program.name for program in used], chosen, self.cache)
+        for one in built.report["bound_values"]:
+            annotation = bound[one["name"]].annotation or NO_ANNOTATION
+            self.log(LOG_PRINT, "COMPILER", f"bound value {one['name']} = {one['value']} ({annotation}) replaces {one['reads']} reads")
         return Pipeline(self, groups, str(built.library), built.params, built.report, built.programs)
 
     def accel_build(

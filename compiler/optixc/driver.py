@@ -8,11 +8,14 @@ from __future__ import annotations
 
 import os
 import time
-from collections.abc import Callable, Sequence
+from collections import Counter
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 from typing import Any
+
+import numpy as np
 
 from optixc import passes, toolchain
 from optixc.cache import Cache, Json, digest
@@ -22,9 +25,11 @@ from optixc.frontend.compile import FrontendResult, compile_file, compile_functi
 from optixc.installation import include_folder
 from optixc.ir import layout, nodes
 from optixc.ir import types as t
+from optixc.ir.walk import expressions
 from optixc.options import BoundValue, CompileOptions
 from optixc.passes.features import Features, features
 from optixc.passes.pipeline import LinkError, link
+from optixc.passes.specialize import parameter_path
 from optixc.version import __version__
 
 PrintAfter = Callable[[str, nodes.Pipeline], None]
@@ -87,6 +92,12 @@ def open_file(path: Path, include_dirs: Sequence[Path], store: Cache) -> Unit:
     return unit
 
 
+def check_bound_values(unit: Unit, values: Mapping[str, BoundValue]) -> None:
+    """Raises unless each value fits a field of the module's launch parameters."""
+    for name, value in values.items():
+        _bound_literal(name, value, unit.result.module.params)
+
+
 def open_functions(functions: Sequence[Any]) -> Unit:
     """The module of live functions. Raises CompileError."""
     result = compile_functions(list(functions))
@@ -113,6 +124,7 @@ def build(units: Sequence[Unit], names: Sequence[str], options: CompileOptions, 
         entry = store.store(key, {}, lambda output: toolchain.compile_shared(emitted.text, output, compiler, plan))
     params = _describe_params(emitted.pipeline.params)
     report = _describe(emitted, options, compiler)
+    report["bound_values"] = _describe_bound([unit.result.module for unit in units], emitted.pipeline.params, emitted.pipeline.options)
     programs = [_describe_program(program) for program in emitted.pipeline.programs]
     if known is not None:
         store.write_note(known, {"entry": key, "params": params, "report": report, "programs": programs})
@@ -198,22 +210,47 @@ def _describe(emitted: Emitted, options: CompileOptions, compiler: toolchain.Com
 
 
 def _bound_literal(name: str, value: BoundValue, params: t.Struct | None) -> nodes.Literal:
-    field = params.field(name) if params is not None else None
-    if field is None:
-        owner = params.name if params is not None else "the shader without launch parameters"
-        raise InvalidValueError(f"bound value {name!r} is no field of {owner}")
-    match field.type:
+    type_ = _field_of(name, params)[0]
+    match type_:
         case t.Scalar(kind=kind):
             wanted: tuple[type, ...] = {t.ScalarKind.BOOL: (bool,), t.ScalarKind.FLOAT: (int, float)}.get(kind, (int,))
             if not isinstance(value, wanted) or (kind is not t.ScalarKind.BOOL and isinstance(value, bool)):
-                raise InvalidValueError(f"bound value {name!r} takes a {field.type}, not {value!r}")
-            return nodes.Literal(float(value) if kind is t.ScalarKind.FLOAT and not isinstance(value, tuple) else value, field.type)
+                raise InvalidValueError(f"bound value {name!r} takes a {type_}, not {value!r}")
+            return nodes.Literal(float(value) if kind is t.ScalarKind.FLOAT and not isinstance(value, tuple) else value, type_)
         case t.Vector(size=size):
             if not isinstance(value, tuple) or len(value) != size:
                 raise InvalidValueError(f"bound value {name!r} takes {size} numbers, not {value!r}")
-            return nodes.Literal(value, field.type)
+            return nodes.Literal(value, type_)
         case _:
-            raise InvalidValueError(f"bound value {name!r} is a {field.type}; scalars and vectors can be bound")
+            raise InvalidValueError(f"bound value {name!r} is a {type_}; numbers, vectors and structs of them can be bound")
+
+
+def _field_of(name: str, params: t.Struct | None) -> tuple[t.Type, int]:
+    """Type and offset of a field of the launch parameters, dotted inside of structs."""
+    if params is None:
+        raise InvalidValueError(f"bound value {name!r} is no field: the shaders have no launch parameters")
+    found: t.Type = params
+    offset = 0
+    for part in name.split("."):
+        names = [field.name for field in found.fields] if isinstance(found, t.Struct) else []
+        if part not in names or not isinstance(found, t.Struct):
+            raise InvalidValueError(f"bound value {name!r} is no field of {params.name}; {found} has {', '.join(names) or 'no fields'}")
+        position = names.index(part)
+        offset += layout.struct_layout(found).offsets[position]
+        found = found.fields[position].type
+    return found, offset
+
+
+def _describe_bound(modules: Sequence[nodes.Module], params: t.Struct | None, options: nodes.PipelineOptions) -> list[Json]:
+    """Where each bound value lies in the launch parameters, its bytes, and how many reads of the modules it replaces."""
+    functions = [function for module in modules for function in (*module.helpers, *module.programs)]
+    reads = Counter(parameter_path(expression) for function in functions for expression in expressions(function.body))
+    described = []
+    for name, literal in options.bound_values:
+        data = np.array(literal.value, layout.dtype_of(t.scalar_of(literal.type) or literal.type)).tobytes()
+        offset = _field_of(name, params)[1]
+        described.append({"name": name, "value": str(literal.value), "offset": offset, "data": data.hex(), "reads": reads[name]})
+    return described
 
 
 def _again(path: Path, include_dirs: Sequence[Path], expected: str) -> FrontendResult:

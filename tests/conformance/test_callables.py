@@ -86,8 +86,8 @@ def test_a_call_that_no_callable_answers_is_named(harness: Harness, tmp_path: Pa
 
 
 # Which kinds of programs may make which call (guide, chapter 15).
-MAY_CALL = {"direct": "raygen intersection anyhit closesthit miss direct_callable continuation_callable".split(),
-            "continuation": "raygen closesthit miss continuation_callable".split()}
+MAY_CALL = {"direct": ["raygen", "intersection", "anyhit", "closesthit", "miss", "direct_callable", "continuation_callable"],
+            "continuation": ["raygen", "closesthit", "miss", "continuation_callable"]}
 KINDS = [*MAY_CALL["direct"], "exception"]
 
 

@@ -44,8 +44,9 @@ class Program:
 class Module(Mapping[str, Program]):
     """The programs of a shader file, Python module or list of functions, by name."""
 
-    def __init__(self, unit: Any, programs: list[dict[str, Any]]) -> None:
+    def __init__(self, unit: Any, programs: list[dict[str, Any]], bound_values: Mapping[str, Any] | None = None) -> None:
         self.unit = unit
+        self.bound_values = dict(bound_values or {})
         self._programs = {one["name"]: Program(self, one["name"], one["record"], one["record_name"]) for one in programs}
 
     def __getitem__(self, name: str) -> Program:

@@ -8,13 +8,14 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
-from optixc.errors import InvalidDeviceContextError, InvalidOperationError, InvalidValueError, from_code
-from optixc.host import library, structs
+from optixc.errors import InvalidDeviceContextError, InvalidOperationError, InvalidValueError, ValidationFailureError, from_code
+from optixc.host import bound_values, library, structs
 from optixc.host.context import Context
 from optixc.host.groups import ProgramGroup, Record, check_layout
 from optixc.host.sbt import ShaderBindingTable
 
 STEP_MS = 50
+FAULT_BOUND_VALUE = 3
 _C_SLOTS = {"direct_callable": "directCallable", "continuation_callable": "continuationCallable"}
 
 
@@ -33,6 +34,7 @@ class PipelineReport:
     features: dict[str, str] = field(default_factory=dict)
     traces: tuple[str, ...] = ()
     ignored: tuple[str, ...] = ()
+    bound_values: tuple[dict[str, Any], ...] = ()
 
     def __str__(self) -> str:
         source = "from the cache" if self.cache_hit else f"compiled in {self.compile_seconds:.2f} s"
@@ -42,6 +44,7 @@ class PipelineReport:
             f"launch parameters {self.params_size} bytes, trace depth {self.max_trace_depth}",
             *self.features.values(),
             *(f"trace {one}" for one in self.traces),
+            *(f"bound {one['name']} = {one['value']} ({one['reads']} reads)" for one in self.bound_values),
             *(f"ignored on a CPU: {one}" for one in self.ignored),
         ]
         return "\n".join(lines)
@@ -74,6 +77,7 @@ class Pipeline:
         made = ffi.new("OxrtPipeline*")
         library.check(self._lib.oxrtPipelineLoad(context.handle, path.encode(), made))
         self._pipeline = made[0]
+        self._checked_bound_values = report.get("bound_values", ()) if context.validation else ()
         self._done = ffi.new("int*")
         self._null = ffi.NULL
         self._from_buffer = ffi.from_buffer
@@ -99,6 +103,8 @@ class Pipeline:
                 data, size = self._null, 0
             else:
                 packed = params.packed()
+                if self._checked_bound_values:
+                    self._check_bound_values(packed)
                 data, size = self._from_buffer(packed), len(packed)
             self._run(data, size, table, width, height, depth)
 
@@ -184,6 +190,13 @@ class Pipeline:
                 f"this pipeline's launch parameters are a {name} ({text}), not this {type(params).__name__} ({layout.text})"
             )
         self._params_type = type(params)
+
+    def _check_bound_values(self, packed: bytes | bytearray) -> None:
+        wrong = bound_values.difference(packed, self._checked_bound_values)
+        if wrong is not None:
+            error = ValidationFailureError(wrong)
+            error.fault_code = FAULT_BOUND_VALUE
+            raise error
 
     def _refuse_dead(self) -> None:
         # Raises for a destroyed context and in a forked child.

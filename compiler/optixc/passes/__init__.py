@@ -6,12 +6,14 @@ from collections.abc import Callable
 
 from optixc.ir.nodes import Pipeline
 from optixc.passes.fold_constants import fold_constants
+from optixc.passes.propagate import propagate_constants
 from optixc.passes.remove_unused import remove_unused
 from optixc.passes.specialize import specialize
 
 PASSES: tuple[tuple[str, Callable[[Pipeline], Pipeline]], ...] = (
     ("specialize", specialize),
     ("fold_constants", fold_constants),
+    ("propagate_constants", propagate_constants),
     ("remove_unused", remove_unused),
 )
 

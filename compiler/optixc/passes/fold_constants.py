@@ -14,6 +14,7 @@ from optixc.ir.nodes import (
     Binary,
     Break,
     CallIntrinsic,
+    ComponentRef,
     Continue,
     Convert,
     Expr,
@@ -29,7 +30,7 @@ from optixc.ir.nodes import (
     UnaryOp,
     While,
 )
-from optixc.ir.types import Scalar
+from optixc.ir.types import Scalar, Vector
 from optixc.ir.walk import Body, map_blocks, map_operands, rewrite
 from optixc.passes import arithmetic
 
@@ -101,6 +102,9 @@ def fold(expression: Expr) -> Expr:
             return expression.right if value is is_and else expression.left
         case Logical(is_and=is_and, right=Literal(value=bool(value))) if value is is_and:
             return expression.left
+        case ComponentRef(base=Literal(value=tuple(values)), components=components, type=type_):
+            picked = tuple(values[component] for component in components)
+            return Literal(picked if isinstance(type_, Vector) else picked[0], type_)
         case Select(condition=Literal(value=bool(value))):
             return expression.if_true if value else expression.if_false
         case Convert(operand=Literal(value=value, type=Scalar()), type=Scalar() as target) if not isinstance(value, tuple):
