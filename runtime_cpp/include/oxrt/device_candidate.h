@@ -41,13 +41,16 @@ OXRT_INLINE const OxrtTraversableView* findTraversable(const OxrtLaunch& launch,
 }
 
 /* Enter which primitive the hit is on. */
-OXRT_INLINE void locate(Ray& ray, uint32_t instance, uint32_t geometry, uint32_t primitive) {
+OXRT_INLINE void locate(Ray& ray, uint32_t instance, const OxrtGeometry* geometry, uint32_t primitive) {
     ray.instance = instance == RTC_INVALID_GEOMETRY_ID ? nullptr : ray.root->instances + instance;
-    ray.geometry = (ray.instance ? ray.instance->child : ray.root)->geometries + geometry;
+    ray.geometry = geometry;
     ray.primitive = primitive;
 }
-OXRT_INLINE void enterHit(Ray& ray, const RTCHit& hit, float t) {
-    locate(ray, hit.instID[0], hit.geomID, hit.primID);
+/* `geometry` is what Embree's callbacks get as the geometry's user pointer; without callback it is looked up. */
+OXRT_INLINE void enterHit(Ray& ray, const RTCHit& hit, float t, const void* geometry = nullptr) {
+    locate(ray, hit.instID[0], static_cast<const OxrtGeometry*>(geometry), hit.primID);
+    if (!geometry)
+        ray.geometry = (ray.instance ? ray.instance->child : ray.root)->geometries + hit.geomID;
     ray.t = t;
     ray.u = hit.u;
     ray.v = hit.v;
@@ -126,7 +129,7 @@ template <class Programs, bool MAY_CULL> void filterCandidate(const RTCFilterFun
     RTCRay& embreeRay = *static_cast<RTCRay*>(arguments->ray);
     if (arguments->valid[0] != -1)
         return;
-    enterHit(ray, *static_cast<const RTCHit*>(arguments->hit), embreeRay.tfar);
+    enterHit(ray, *static_cast<const RTCHit*>(arguments->hit), embreeRay.tfar, arguments->geometryUserPtr);
     ray.objectRay = &embreeRay;
     switch (judge<Programs, MAY_CULL>(ray)) {
     case Verdict::Accept: break;

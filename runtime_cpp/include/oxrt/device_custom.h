@@ -32,13 +32,13 @@ OXRT_INLINE bool meetsBox(const RTCRay& ray, const float* box, float tmin, float
 }
 
 /* Runs the intersection program of a custom primitive that Embree offers. `hit` is null in occlusion queries. */
-template <class Programs> OXRT_INLINE void runIntersection(Ray& ray, RTCRay& embreeRay, RTCHit* hit, uint32_t geometry, uint32_t primitive) {
+template <class Programs> OXRT_INLINE void runIntersection(Ray& ray, RTCRay& embreeRay, RTCHit* hit, const void* geometry, uint32_t geometryId, uint32_t primitive) {
     if (ray.isTerminated)
         return;
-    locate(ray, ray.context.instID[0], geometry, primitive);
+    locate(ray, ray.context.instID[0], static_cast<const OxrtGeometry*>(geometry), primitive);
     ray.embreeRay = &embreeRay;
     ray.embreeHit = hit;
-    ray.embreeGeometry = geometry;
+    ray.embreeGeometry = geometryId;
     ray.objectRay = &embreeRay;
     if (embreeRay.tfar != ray.closestInEmbree)
         ray.closest = ray.closestInEmbree = embreeRay.tfar;
@@ -65,12 +65,14 @@ template <class Programs> OXRT_INLINE void runIntersection(Ray& ray, RTCRay& emb
 template <class Programs> void intersectCustom(const RTCIntersectFunctionNArguments* arguments) {
     auto& rayhit = *static_cast<RTCRayHit*>(arguments->rayhit);
     if (arguments->valid[0] == -1)
-        runIntersection<Programs>(*reinterpret_cast<Ray*>(arguments->context), rayhit.ray, &rayhit.hit, arguments->geomID, arguments->primID);
+        runIntersection<Programs>(*reinterpret_cast<Ray*>(arguments->context), rayhit.ray, &rayhit.hit, arguments->geometryUserPtr,
+                                  arguments->geomID, arguments->primID);
 }
 template <class Programs> void occludeCustom(const RTCOccludedFunctionNArguments* arguments) {
     auto& embreeRay = *static_cast<RTCRay*>(arguments->ray);
     if (arguments->valid[0] == -1)
-        runIntersection<Programs>(*reinterpret_cast<Ray*>(arguments->context), embreeRay, nullptr, arguments->geomID, arguments->primID);
+        runIntersection<Programs>(*reinterpret_cast<Ray*>(arguments->context), embreeRay, nullptr, arguments->geometryUserPtr,
+                                  arguments->geomID, arguments->primID);
 }
 
 /* Makes the reported hit the closest one. */
