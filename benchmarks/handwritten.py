@@ -29,7 +29,7 @@ _COMPILERS = (("g++",), ("clang++", "clang++-19", "clang++-18", "clang++-17", "c
 
 _SCENE_FUNCTIONS = """
 void* bench_device_create(const char* configuration); void bench_device_release(void* device);
-void* bench_scene_create(void* device); void bench_scene_commit(void* scene); void bench_scene_release(void* scene);
+void* bench_scene_create(void* device); void bench_scene_commit(void* scene, int join); void bench_scene_release(void* scene);
 void bench_scene_add_triangles(void* device, void* scene, const float* vertices, size_t vertexCount, const unsigned* indices,
                                size_t triangleCount);
 void bench_scene_add_custom(void* device, void* scene, const float* boxes, unsigned count);
@@ -76,6 +76,7 @@ class Embree:
     """One Embree device for all hand-written kernels of a run."""
 
     def __init__(self, threads: int) -> None:
+        self.threads = threads
         self.ffi = cffi.FFI()
         self.ffi.cdef(re.sub(r"^#.*$", "", (KERNELS / "job.h").read_text(), flags=re.MULTILINE) + _SCENE_FUNCTIONS)
         # never unloaded: threads of Embree may still run its code when Python ends
@@ -121,7 +122,7 @@ class EmbreeScene:
             self._add_triangles(scene.vertices, scene.triangles)
         if with_light:
             self._add_triangles(scene.light.vertices, LIGHT_TRIANGLES)
-        library.bench_scene_commit(self.handle)
+        library.bench_scene_commit(self.handle, embree.threads == 1)
 
     def _add_triangles(self, vertices: Floats, triangles: NDArray[np.uint32]) -> None:
         vertex_pointer, index_pointer = self.embree.pointer(vertices, "float*"), self.embree.pointer(triangles, "unsigned*")

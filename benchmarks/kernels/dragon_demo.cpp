@@ -13,7 +13,7 @@ void* bench_device_create(const char* configuration);
 void* bench_scene_create(void* device);
 void bench_scene_add_triangles(void* device, void* scene, const float* vertices, size_t vertexCount, const unsigned* indices,
                                size_t triangleCount);
-void bench_scene_commit(void* scene);
+void bench_scene_commit(void* scene, int join);
 void ambient_occlusion_scalar(BenchJob* job);
 }
 
@@ -38,7 +38,7 @@ int main(int, char** arguments) {
     void* device = bench_device_create(arguments[4]);
     void* scene = bench_scene_create(device);
     bench_scene_add_triangles(device, scene, vertices.data(), vertices.size() / 3, triangles.data(), triangles.size() / 3);
-    bench_scene_commit(scene);
+    bench_scene_commit(scene, 0);
     std::vector<float> image(size_t(job.width) * job.height * 4);
     job.scene = scene;
     job.image = image.data();

@@ -57,7 +57,13 @@ void bench_scene_add_custom(void* device, void* scene, const float* boxes, unsig
     attach(static_cast<RTCScene>(scene), geometry);
 }
 
-void bench_scene_commit(void* scene) { rtcCommitScene(static_cast<RTCScene>(scene)); }
+// A device of one thread joins its builds: otherwise, with a second device in the process, TBB leaves a worker that spins for ever.
+void bench_scene_commit(void* scene, int join) {
+    if (join)
+        rtcJoinCommitScene(static_cast<RTCScene>(scene));
+    else
+        rtcCommitScene(static_cast<RTCScene>(scene));
+}
 void bench_scene_release(void* scene) { rtcReleaseScene(static_cast<RTCScene>(scene)); }
 
 }
