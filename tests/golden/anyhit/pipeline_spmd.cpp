@@ -80,6 +80,7 @@ struct ShadowPrograms : oxrt::NoPrograms {
 struct ShadowProgramsLanes : oxrt::NoLanePrograms {
     using Scalar = ShadowPrograms;
     using Payload = Wide<Shadow>;
+    static void anyHit(Rays& trace, Mask mask, Payload& payload);
     static void miss(Rays& trace, Mask mask, Payload& payload);
 };
 
@@ -112,6 +113,8 @@ void anyhit_glass(oxrt::Ray& trace, Shadow& shadow, const Glass& glass) {
     }
 }
 
+#line 117 "pipeline.cpp"
+void stop_if_dark_lanes([[maybe_unused]] Rays& trace, [[maybe_unused]] Mask mask, const Wide<Shadow>& shadow);
 
 #line 36 "shader.py"
 void raygen_lights_lanes([[maybe_unused]] Lanes& thread, [[maybe_unused]] Mask mask) {
@@ -128,19 +131,77 @@ void raygen_lights_lanes([[maybe_unused]] Lanes& thread, [[maybe_unused]] Mask m
     oxrt::store<LANES>(mask, shadow.light, params.light, i);
 }
 
+#line 30 "shader.py"
+void stop_if_dark_lanes([[maybe_unused]] Rays& trace, [[maybe_unused]] Mask mask, const Wide<Shadow>& shadow) {
+    [[maybe_unused]] Lanes& thread = *trace.thread;
+    const Mask test = shadow.light.x < 0.01f;
+#line 31 "shader.py"
+    Mask mask_ = mask & test;
+#line 31 "shader.py"
+    if (oxrt::any(mask_)) {
+        oxrt::terminateRay(trace, mask_);
+#line 32 "shader.py"
+        mask_ = false;
+    }
+    mask = mask_ | oxrt::without(mask, test);
+}
+
+#line 52 "shader.py"
+void anyhit_glass_lanes([[maybe_unused]] Rays& trace, [[maybe_unused]] Mask mask, Wide<Shadow>& shadow, const Wide<Glass>& glass) {
+    [[maybe_unused]] Lanes& thread = *trace.thread;
+#line 53 "shader.py"
+    oxrt::assign(mask, shadow.hits, shadow.hits + 1);
+    Wide<oxrt::float2> uv = oxrt::getTriangleBarycentrics(trace);
+    const Mask test = uv.x + uv.y < glass.opacity;
+#line 55 "shader.py"
+    Mask mask_ = mask & test;
+#line 55 "shader.py"
+    if (oxrt::any(mask_)) {
+        oxrt::ignoreIntersection(trace, mask_);
+#line 56 "shader.py"
+        mask_ = false;
+    }
+    mask = mask_ | oxrt::without(mask, test);
+    if (oxrt::any(mask)) {
+#line 57 "shader.py"
+        oxrt::assign(mask, shadow.light, shadow.light * glass.tint);
+        stop_if_dark_lanes(trace, mask, shadow);
+#line 58 "shader.py"
+        mask = oxrt::without(mask, oxrt::endedLanes(trace));
+        if (oxrt::any(mask)) {
+            const Mask test_ = oxrt::isFrontFaceHit(trace);
+#line 59 "shader.py"
+            Mask mask_2 = mask & test_;
+#line 59 "shader.py"
+            if (oxrt::any(mask_2)) {
+                oxrt::ignoreIntersection(trace, mask_2);
+#line 60 "shader.py"
+                mask_2 = false;
+            }
+            mask = mask_2 | oxrt::without(mask, test_);
+        }
+    }
+}
+
 #line 64 "shader.py"
 void miss_dark_lanes([[maybe_unused]] Lanes& thread, [[maybe_unused]] Mask mask, Wide<Shadow>& shadow) {
     oxrt::assign(mask, shadow.light, oxrt::float3(0.0f));
 }
 
-#line 137 "pipeline.cpp"
+#line 192 "pipeline.cpp"
 void ShadowPrograms::anyHit(oxrt::Ray& trace, Payload& payload, const OxrtRecordHeader& record) {
     if (record.programs[oxrt::SLOT_ANYHIT] == number::anyhit_glass)
         anyhit_glass(trace, payload, oxrt::recordData<Glass>(record));
 }
 
+void ShadowProgramsLanes::anyHit(Rays& trace, Mask mask, Payload& payload) {
+    const Wide<int32_t> program = oxrt::recordPrograms(trace.records, mask, oxrt::SLOT_ANYHIT);
+    if (const Mask own = mask & (program == int32_t(number::anyhit_glass)); oxrt::any(own))
+        anyhit_glass_lanes(trace, own, payload, oxrt::loadRecord<Glass>(trace.records, own));
+}
+
 void ShadowProgramsLanes::miss(Rays& trace, Mask mask, Payload& payload) {
-    const Wide<int32_t> program = oxrt::recordPrograms(trace, mask, 0);
+    const Wide<int32_t> program = oxrt::recordPrograms(trace.records, mask, 0);
     if (const Mask own = mask & (program == int32_t(number::miss_dark)); oxrt::any(own))
         miss_dark_lanes(*trace.thread, own, payload);
 }

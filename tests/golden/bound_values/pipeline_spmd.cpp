@@ -103,7 +103,7 @@ void miss_white_lanes([[maybe_unused]] Lanes& thread, [[maybe_unused]] Mask mask
 
 #line 105 "pipeline.cpp"
 void RadianceProgramsLanes::miss(Rays& trace, Mask mask, Payload& payload) {
-    const Wide<int32_t> program = oxrt::recordPrograms(trace, mask, 0);
+    const Wide<int32_t> program = oxrt::recordPrograms(trace.records, mask, 0);
     if (const Mask own = mask & (program == int32_t(number::miss_white)); oxrt::any(own))
         miss_white_lanes(*trace.thread, own, payload);
 }

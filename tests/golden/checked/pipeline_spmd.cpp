@@ -121,7 +121,7 @@ void closesthit_white_lanes([[maybe_unused]] Lanes& thread, [[maybe_unused]] Mas
 
 #line 123 "pipeline.cpp"
 void RadianceProgramsLanes::closestHit(Rays& trace, Mask mask, Payload& payload) {
-    const Wide<int32_t> program = oxrt::recordPrograms(trace, mask, oxrt::SLOT_CLOSESTHIT);
+    const Wide<int32_t> program = oxrt::recordPrograms(trace.records, mask, oxrt::SLOT_CLOSESTHIT);
     if (const Mask own = mask & (program == int32_t(number::closesthit_white)); oxrt::any(own))
         closesthit_white_lanes(*trace.thread, own, payload);
     oxrt::payloadMismatch(trace, mask & !((program == int32_t(number::closesthit_white)) | (program == int32_t(OXRT_NO_PROGRAM))));

@@ -90,43 +90,11 @@ struct DistanceProgramsLanes : oxrt::NoLanePrograms {
     using Scalar = DistancePrograms;
     using Payload = Wide<Distance>;
     static void closestHit(Rays& trace, Mask mask, Payload& payload);
+    static void intersection(Rays& trace, Mask mask, Payload& payload);
 };
 
-#line 34 "shader.py"
-template <class Programs> bool report_root(oxrt::Ray& trace, float t, oxrt::float3 center) {
-    oxrt::float3 n = oxrt::normalize(oxrt::getObjectRayOrigin(trace) + t * oxrt::getObjectRayDirection(trace) - center);
-    bool accepted = oxrt::reportIntersection<Programs>(trace, t, 1u, SpherePoint{n});
-#line 36 "shader.py"
-    if (oxrt::hasEnded(trace))
-        return {};
-#line 36 "shader.py"
-    return accepted;
-}
-
-#line 48 "shader.py"
-template <class Programs> void intersection_sphere(oxrt::Ray& trace, const Sphere& sphere) {
-    oxrt::float3 o = oxrt::getObjectRayOrigin(trace) - sphere.center;
-    oxrt::float3 d = oxrt::getObjectRayDirection(trace);
-    float a = oxrt::dot(d, d);
-#line 51 "shader.py"
-    float b = oxrt::dot(o, d);
-    float discriminant = b * b - a * (oxrt::dot(o, o) - sphere.radius * sphere.radius);
-    if (discriminant >= 0.0f) {
-        float root = oxrt::sqrt(discriminant);
-        bool result_ = report_root<Programs>(trace, (-b - root) / a, sphere.center);
-#line 55 "shader.py"
-        if (oxrt::hasEnded(trace))
-            return;
-#line 55 "shader.py"
-        if (!result_) {
-            oxrt::reportIntersection<Programs>(trace, (-b + root) / a, 2u, oxrt::attributeWords(oxrt::floatAsUint(root), 7u));
-#line 56 "shader.py"
-            if (oxrt::hasEnded(trace))
-                return;
-        }
-    }
-}
-
+template <class Programs> Wide<bool> report_root_lanes([[maybe_unused]] Rays& trace, [[maybe_unused]] Mask mask, Wide<float> t,
+        const Wide<oxrt::float3>& center);
 
 #line 40 "shader.py"
 void raygen_depth_lanes([[maybe_unused]] Lanes& thread, [[maybe_unused]] Mask mask) {
@@ -140,6 +108,63 @@ void raygen_depth_lanes([[maybe_unused]] Lanes& thread, [[maybe_unused]] Mask ma
     oxrt::store<LANES>(mask, oxrt::select(Wide<bool>(found.back), -found.t, found.t), params.depth, i.x);
 }
 
+#line 34 "shader.py"
+template <class Programs> Wide<bool> report_root_lanes([[maybe_unused]] Rays& trace, [[maybe_unused]] Mask mask, Wide<float> t,
+        const Wide<oxrt::float3>& center) {
+    [[maybe_unused]] Lanes& thread = *trace.thread;
+    Wide<bool> result{};
+#line 35 "shader.py"
+    Wide<oxrt::float3> n = oxrt::normalize(oxrt::getObjectRayOrigin(trace) + t * oxrt::getObjectRayDirection(trace) - center);
+    Wide<bool> accepted = oxrt::reportIntersection<Programs>(trace, mask, t, 1u, oxrt::attributesToLanes<SpherePoint,
+            LANES>(Wide<SpherePoint>{n}));
+#line 36 "shader.py"
+    mask = oxrt::without(mask, oxrt::endedLanes(trace));
+    if (oxrt::any(mask)) {
+#line 36 "shader.py"
+        oxrt::assign(mask, result, accepted);
+#line 36 "shader.py"
+        mask = false;
+    }
+    return result;
+}
+
+#line 48 "shader.py"
+template <class Programs> void intersection_sphere_lanes([[maybe_unused]] Rays& trace, [[maybe_unused]] Mask mask,
+        const Wide<Sphere>& sphere) {
+    [[maybe_unused]] Lanes& thread = *trace.thread;
+#line 49 "shader.py"
+    Wide<oxrt::float3> o = oxrt::getObjectRayOrigin(trace) - sphere.center;
+    Wide<oxrt::float3> d = oxrt::getObjectRayDirection(trace);
+    Wide<float> a = oxrt::dot(d, d);
+#line 51 "shader.py"
+    Wide<float> b = oxrt::dot(o, d);
+    Wide<float> discriminant = b * b - a * (oxrt::dot(o, o) - sphere.radius * sphere.radius);
+    const Mask test = discriminant >= 0.0f;
+#line 53 "shader.py"
+    Mask mask_ = mask & test;
+#line 53 "shader.py"
+    if (oxrt::any(mask_)) {
+        Wide<float> root = oxrt::sqrt(discriminant);
+        Wide<bool> result_ = report_root_lanes<Programs>(trace, mask_, (-b - root) / a, sphere.center);
+#line 55 "shader.py"
+        mask_ = oxrt::without(mask_, oxrt::endedLanes(trace));
+        if (oxrt::any(mask_)) {
+            const Mask test_ = !result_;
+#line 55 "shader.py"
+            Mask mask_2 = mask_ & test_;
+#line 55 "shader.py"
+            if (oxrt::any(mask_2)) {
+                oxrt::reportIntersection<Programs>(trace, mask_2, (-b + root) / a, 2u, oxrt::attributeLanes<LANES>(oxrt::floatAsUint(root),
+                        Wide<uint32_t>(7u)));
+#line 56 "shader.py"
+                mask_2 = oxrt::without(mask_2, oxrt::endedLanes(trace));
+            }
+            mask_ = mask_2 | oxrt::without(mask_, test_);
+        }
+    }
+    mask = mask_ | oxrt::without(mask, test);
+}
+
 #line 60 "shader.py"
 void closesthit_sphere_lanes([[maybe_unused]] Rays& trace, [[maybe_unused]] Mask mask, Wide<Distance>& found,
         const Wide<SpherePoint>& point) {
@@ -149,16 +174,17 @@ void closesthit_sphere_lanes([[maybe_unused]] Rays& trace, [[maybe_unused]] Mask
     oxrt::assign(mask, found.back, (oxrt::getHitKind(trace) == 2u) | (point.normal.z > 0.0f));
 }
 
-#line 153 "pipeline.cpp"
-void DistancePrograms::intersection(oxrt::Ray& trace, Payload&, const OxrtRecordHeader& record) {
-    if (record.programs[oxrt::SLOT_INTERSECTION] == number::intersection_sphere)
-        intersection_sphere<DistancePrograms>(trace, oxrt::recordData<Sphere>(record));
-}
-
+#line 178 "pipeline.cpp"
 void DistanceProgramsLanes::closestHit(Rays& trace, Mask mask, Payload& payload) {
-    const Wide<int32_t> program = oxrt::recordPrograms(trace, mask, oxrt::SLOT_CLOSESTHIT);
+    const Wide<int32_t> program = oxrt::recordPrograms(trace.records, mask, oxrt::SLOT_CLOSESTHIT);
     if (const Mask own = mask & (program == int32_t(number::closesthit_sphere)); oxrt::any(own))
         closesthit_sphere_lanes(trace, own, payload, oxrt::getAttributes<SpherePoint>(trace));
+}
+
+void DistanceProgramsLanes::intersection(Rays& trace, Mask mask, Payload&) {
+    const Wide<int32_t> program = oxrt::recordPrograms(trace.records, mask, oxrt::SLOT_INTERSECTION);
+    if (const Mask own = mask & (program == int32_t(number::intersection_sphere)); oxrt::any(own))
+        intersection_sphere_lanes<DistanceProgramsLanes>(trace, own, oxrt::loadRecord<Sphere>(trace.records, own));
 }
 
 void run_raygen_depth(OxrtThread* thread, const OxrtTile* tile) {

@@ -85,9 +85,8 @@ void raygen_store_lanes([[maybe_unused]] Lanes& thread, [[maybe_unused]] Mask ma
     const Params& params = oxrt::launchParams<Params>(thread);
 #line 40 "shader.py"
     Wide<oxrt::uint3> i = oxrt::getLaunchIndex(thread);
-    Wide<uint32_t> slot = oxrt::mapActive(mask,
-            [&]([[maybe_unused]] int lane) { return oxrt::atomicAdd(oxrt::inLane(params.store.count.at(0), lane), oxrt::inLane(1u,
-            lane)); });
+    Wide<uint32_t> slot = oxrt::mapActive(mask, [&]([[maybe_unused]] int lane) { return oxrt::atomicAdd(oxrt::inLane(params.store.count,
+            lane).at(oxrt::inLane(0, lane)), oxrt::inLane(1u, lane)); });
 #line 42 "shader.py"
     Photon photon = Photon{oxrt::float3(1.0f), oxrt::float3(0.5f), uint8_t(3u)};
     float result_ = next_float(photon);
@@ -108,8 +107,8 @@ void raygen_store_lanes([[maybe_unused]] Lanes& thread, [[maybe_unused]] Mask ma
                 lane); }, params.store.photons, slot);
     }
 #line 48 "shader.py"
-    oxrt::eachLane(mask, [&](int lane) { oxrt::atomicMax(oxrt::inLane(oxrt::load<LANES>(mask, params.sums, slot), lane), oxrt::inLane(uv.x,
-            lane)); });
+    oxrt::eachLane(mask, [&]([[maybe_unused]] int lane) { oxrt::atomicMax(oxrt::inLane(params.sums, lane).at(oxrt::inLane(slot, lane)),
+            oxrt::inLane(uv.x, lane)); });
 #line 49 "shader.py"
     oxrt::float4 texel = oxrt::tex2d(*thread.thread, params.image, uv.x, uv.y);
     oxrt::store<LANES>(mask, Wide<oxrt::float4>(oxrt::float4(float(oxrt::half(texel.x)), float(oxrt::half(texel.y)),
@@ -121,7 +120,7 @@ void raygen_store_lanes([[maybe_unused]] Lanes& thread, [[maybe_unused]] Mask ma
     oxrt::store<LANES>(mask, oxrt::spread<16>(copied), params.store.photons, 0);
 }
 
-#line 125 "pipeline.cpp"
+#line 124 "pipeline.cpp"
 void run_raygen_store(OxrtThread* thread, const OxrtTile* tile) {
     oxrt::runBlocks<LANES>(*thread, *tile, [](Lanes& lanes, Mask mask) {
         raygen_store_lanes(lanes, mask);

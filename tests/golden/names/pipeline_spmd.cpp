@@ -121,7 +121,7 @@ void closesthit_delete_lanes([[maybe_unused]] Rays& trace_, [[maybe_unused]] Mas
 
 #line 123 "pipeline.cpp"
 void Programs_ProgramsLanes::closestHit(Rays& trace, Mask mask, Payload& payload) {
-    const Wide<int32_t> program = oxrt::recordPrograms(trace, mask, oxrt::SLOT_CLOSESTHIT);
+    const Wide<int32_t> program = oxrt::recordPrograms(trace.records, mask, oxrt::SLOT_CLOSESTHIT);
     if (const Mask own = mask & (program == int32_t(number::closesthit_delete)); oxrt::any(own))
         closesthit_delete_lanes(trace, own, payload);
 }

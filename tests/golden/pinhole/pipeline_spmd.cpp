@@ -126,13 +126,13 @@ void miss_sky_lanes([[maybe_unused]] Lanes& thread, [[maybe_unused]] Mask mask, 
 
 #line 128 "pipeline.cpp"
 void RadianceProgramsLanes::closestHit(Rays& trace, Mask mask, Payload& payload) {
-    const Wide<int32_t> program = oxrt::recordPrograms(trace, mask, oxrt::SLOT_CLOSESTHIT);
+    const Wide<int32_t> program = oxrt::recordPrograms(trace.records, mask, oxrt::SLOT_CLOSESTHIT);
     if (const Mask own = mask & (program == int32_t(number::closesthit_matte)); oxrt::any(own))
-        closesthit_matte_lanes(trace, own, payload, oxrt::loadRecord<Material>(trace, own));
+        closesthit_matte_lanes(trace, own, payload, oxrt::loadRecord<Material>(trace.records, own));
 }
 
 void RadianceProgramsLanes::miss(Rays& trace, Mask mask, Payload& payload) {
-    const Wide<int32_t> program = oxrt::recordPrograms(trace, mask, 0);
+    const Wide<int32_t> program = oxrt::recordPrograms(trace.records, mask, 0);
     if (const Mask own = mask & (program == int32_t(number::miss_sky)); oxrt::any(own))
         miss_sky_lanes(*trace.thread, own, payload);
 }

@@ -171,21 +171,21 @@ void miss_visible_lanes([[maybe_unused]] Lanes& thread, [[maybe_unused]] Mask ma
 
 #line 173 "pipeline.cpp"
 void RadianceProgramsLanes::closestHit(Rays& trace, Mask mask, Payload& payload) {
-    const Wide<int32_t> program = oxrt::recordPrograms(trace, mask, oxrt::SLOT_CLOSESTHIT);
+    const Wide<int32_t> program = oxrt::recordPrograms(trace.records, mask, oxrt::SLOT_CLOSESTHIT);
     if (const Mask own = mask & (program == int32_t(number::closesthit_matte)); oxrt::any(own))
         closesthit_matte_lanes(trace, own, payload);
     if (const Mask own = mask & (program == int32_t(number::closesthit_mirror)); oxrt::any(own))
-        closesthit_mirror_lanes(trace, own, payload, oxrt::loadRecord<Mirror>(trace, own));
+        closesthit_mirror_lanes(trace, own, payload, oxrt::loadRecord<Mirror>(trace.records, own));
 }
 
 void RadianceProgramsLanes::miss(Rays& trace, Mask mask, Payload& payload) {
-    const Wide<int32_t> program = oxrt::recordPrograms(trace, mask, 0);
+    const Wide<int32_t> program = oxrt::recordPrograms(trace.records, mask, 0);
     if (const Mask own = mask & (program == int32_t(number::miss_black)); oxrt::any(own))
         miss_black_lanes(*trace.thread, own, payload);
 }
 
 void LightProgramsLanes::miss(Rays& trace, Mask mask, Payload& payload) {
-    const Wide<int32_t> program = oxrt::recordPrograms(trace, mask, 0);
+    const Wide<int32_t> program = oxrt::recordPrograms(trace.records, mask, 0);
     if (const Mask own = mask & (program == int32_t(number::miss_visible)); oxrt::any(own))
         miss_visible_lanes(*trace.thread, own, payload);
 }

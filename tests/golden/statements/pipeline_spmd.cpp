@@ -37,8 +37,6 @@ namespace number {
 enum : int32_t { raygen_main };
 }
 
-int32_t factorial(int32_t n);
-
 Wide<int32_t> factorial_lanes([[maybe_unused]] Lanes& thread, [[maybe_unused]] Mask mask, int32_t n);
 Wide<int32_t> collatz_lanes([[maybe_unused]] Lanes& thread, [[maybe_unused]] Mask mask, Wide<int32_t> n);
 Wide<oxrt::Tuple<int32_t, int32_t>> divide_lanes([[maybe_unused]] Lanes& thread, [[maybe_unused]] Mask mask, Wide<int32_t> a, int32_t b);
@@ -54,7 +52,7 @@ Wide<int32_t> factorial_lanes([[maybe_unused]] Lanes& thread, [[maybe_unused]] M
     return n * result_;
 }
 
-#line 58 "pipeline.cpp"
+#line 56 "pipeline.cpp"
 // Turns until 1; the loop has no provable bound.
 #line 18 "shader.py"
 Wide<int32_t> collatz_lanes([[maybe_unused]] Lanes& thread, [[maybe_unused]] Mask mask, Wide<int32_t> n) {
@@ -204,7 +202,7 @@ void raygen_main_lanes([[maybe_unused]] Lanes& thread, [[maybe_unused]] Mask mas
     }
 }
 
-#line 208 "pipeline.cpp"
+#line 206 "pipeline.cpp"
 void run_raygen_main(OxrtThread* thread, const OxrtTile* tile) {
     oxrt::runBlocks<LANES>(*thread, *tile, [](Lanes& lanes, Mask mask) {
         raygen_main_lanes(lanes, mask);
