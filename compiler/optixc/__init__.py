@@ -26,6 +26,7 @@ from optixc.host.pipeline import Pipeline, PipelineReport
 from optixc.host.sbt import ShaderBindingTable
 from optixc.host.scalars import float16, float32, float64, int8, int16, int32, int64, uint8, uint16, uint32, uint64
 from optixc.host.structs import attributes, copy, payload, payload_word, struct
+from optixc.host.texture import Texture2D
 from optixc.host.vectors import (
     bool2,
     bool3,
@@ -92,6 +93,7 @@ __all__ = [
     "Record",
     "ShaderBindingTable",
     "Texture",
+    "Texture2D",
     "ToolchainError",
     "Traversable",
     "__version__",

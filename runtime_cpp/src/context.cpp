@@ -5,6 +5,7 @@
 #include "cpu.h"
 #include "objects.h"
 #include "pipeline.h"
+#include "texture.h"
 #include "trace_services.h"
 
 #include <algorithm>
@@ -21,7 +22,6 @@ namespace {
 
 constexpr unsigned maxThreads = 1024;
 constexpr std::uint32_t maxTraversables = 1u << 24;
-constexpr std::uint32_t maxTextures = 1u << 20;
 
 unsigned chooseThreads(unsigned wanted)
 {
@@ -56,7 +56,7 @@ unsigned usableThreads()
 
 Context::Context(const OxrtContextOptions& options)
     : embree(loadEmbree(options.embreePath)), validation(checkValidation(options.validation)), threads(chooseThreads(options.threads)),
-      traversables(maxTraversables), textures(maxTextures), pool(threads), process(forkCount())
+      traversables(maxTraversables), pool(threads), process(forkCount())
 {
     setLog(options.logCallback, options.logCallbackData, options.logCallbackLevel);
     device = embree.rtcNewDevice(formatText("threads=%u", threads).c_str());
@@ -202,29 +202,6 @@ std::shared_ptr<const Accel> Context::findAccel(std::uint64_t handle) const
     return entry == accels.end() ? nullptr : entry->second.lock();
 }
 
-std::uint64_t Context::addTexture(std::shared_ptr<const OxrtTextureView> texture)
-{
-    const std::uint64_t handle = textures.add(texture.get());
-    const std::lock_guard lock(textureMutex);
-    textureOwners[handle] = std::move(texture);
-    return handle;
-}
-
-void Context::removeTexture(std::uint64_t handle)
-{
-    std::shared_ptr<const OxrtTextureView> texture;
-    {
-        const std::lock_guard lock(textureMutex);
-        const auto entry = textureOwners.find(handle);
-        if (entry == textureOwners.end())
-            fail(OXRT_ERROR_INVALID_VALUE, "texture handle 0x%llx is not alive in this context", static_cast<unsigned long long>(handle));
-        texture = std::move(entry->second);
-        textureOwners.erase(entry);
-    }
-    textures.remove(handle);
-    retire(std::move(texture));
-}
-
 } // namespace oxrt
 
 using namespace oxrt;
@@ -243,6 +220,7 @@ OxrtResult oxrtContextDestroy(OxrtContext context)
     return guard([&] {
         const ContextObjects withdrawn = withdraw(context);
         for (const auto& pipeline : withdrawn.pipelines) pipeline->finishLaunch();
+        removeTextures(withdrawn.context.get());
         for (const auto& accel : withdrawn.accels) accel->invalidate();
     });
 }

@@ -54,15 +54,11 @@ public:
     // Null for a stale handle.
     std::shared_ptr<const Accel> findAccel(std::uint64_t handle) const;
 
-    std::uint64_t addTexture(std::shared_ptr<const OxrtTextureView> texture);
-    void removeTexture(std::uint64_t handle);
-
     const EmbreeLibrary& embree;
     RTCDevice device = nullptr;
     const bool validation;
     const unsigned threads;
     SlotTable<OxrtTraversableSlot> traversables;
-    SlotTable<OxrtTextureSlot> textures;
     Pool pool;
     OxrtServices services = {};
     std::mutex buildMutex; // one build at a time: each uses all threads, and its memory can be told apart
@@ -96,9 +92,6 @@ private:
 
     mutable std::mutex accelMutex;
     std::unordered_map<std::uint64_t, std::weak_ptr<const Accel>> accels;
-
-    std::mutex textureMutex;
-    std::unordered_map<std::uint64_t, std::shared_ptr<const OxrtTextureView>> textureOwners;
 };
 
 // As many as the process may use: its CPU set and its cgroup's quota.

@@ -3,6 +3,7 @@
 
 #include "context.h"
 #include "cpu.h"
+#include "texture.h"
 
 #include <algorithm>
 #include <cstdio>
@@ -42,8 +43,9 @@ void Launch::prepare(const Context& context, const OxrtLaunch& launch, const Oxr
     view.params = paramsCopy.data();
     view.traversables = context.traversables.data();
     view.traversableCount = context.traversables.size();
-    view.textures = context.textures.data();
-    view.textureCount = context.textures.size();
+    const TextureSlots textures = textureSlots();
+    view.textures = textures.slots;
+    view.textureCount = textures.count;
     view.services = &context.services;
     view.cancel = &cancelWord;
     view.validation = context.validation;

@@ -165,6 +165,14 @@ ContextObjects withdraw(OxrtContext handle)
     return withdrawn;
 }
 
+std::vector<std::shared_ptr<Context>> liveContexts()
+{
+    std::vector<std::shared_ptr<Context>> live;
+    const std::lock_guard lock(objects().mutex);
+    for (const auto& entry : objects().contexts) live.push_back(entry.second);
+    return live;
+}
+
 unsigned forkCount()
 {
     return objects().forks;

@@ -36,6 +36,8 @@ struct ContextObjects {
 // The context and all that was made from it.
 ContextObjects withdraw(OxrtContext handle);
 
+std::vector<std::shared_ptr<Context>> liveContexts();
+
 // How often fork() made a new process since this library was loaded.
 unsigned forkCount();
 

@@ -162,6 +162,13 @@ TEST(kernelsSeeIeeeDenormalsRecordsAndTextures)
     CHECK_EQUAL(hit.primitive, 3u);
     CHECK_SUCCESS(oxrtTextureDestroy(fixture.context, handle));
     CHECK_FAILS(oxrtTextureDestroy(fixture.context, handle), OXRT_ERROR_INVALID_VALUE, "not alive");
+    CHECK_SUCCESS(oxrtTextureCreate(nullptr, &texture, &handle)); // of no context, seen by all
+    params.texture = handle;
+    CHECK_SUCCESS(oxrtLaunch(fixture.pipeline, &params, sizeof params, &sbt, 1, 1, 1));
+    CHECK_EQUAL(hit.primitive, 3u);
+    CHECK_FAILS(oxrtTextureDestroy(fixture.context, handle), OXRT_ERROR_INVALID_VALUE, "not alive in this context");
+    CHECK_SUCCESS(oxrtTextureDestroy(nullptr, handle));
+    CHECK_FAILS(oxrtTextureDestroy(nullptr, handle), OXRT_ERROR_INVALID_VALUE, "not alive");
     texture.channels = 5;
     CHECK_FAILS(oxrtTextureCreate(fixture.context, &texture, &handle), OXRT_ERROR_INVALID_VALUE, "5 channels");
 }

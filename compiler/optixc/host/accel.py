@@ -18,6 +18,7 @@ from optixc.host.inputs import BuildInput, MotionOptions, pack_inputs
 class TraversableHandle(int):
     """A traversable's 64-bit handle. It keeps its accel alive, so that parameters and records that hold it do."""
 
+    of = "Traversable"
     accel: Any
 
     def __new__(cls, value: int, accel: Any = None) -> TraversableHandle:

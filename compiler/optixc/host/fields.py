@@ -190,6 +190,8 @@ class HandleField:
         handle = getattr(value, "handle", value)
         if isinstance(handle, bool) or not isinstance(handle, int | np.integer) or not 0 <= handle < 1 << 64:
             raise refuse(where, f"a {self.text}: an object with .handle, or a handle", value)
+        if getattr(handle, "of", self.text) != self.text:
+            raise refuse(where, f"a {self.text}", value)
         struct.pack_into("<Q", buffer, offset, int(handle))
         return handle
 

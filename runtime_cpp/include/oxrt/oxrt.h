@@ -158,6 +158,7 @@ typedef struct OxrtTextureOptions {
     uint32_t srgb;       /* decode sRGB when reading uint8 colour */
 } OxrtTextureOptions;
 
+/* Programs of every context may read a texture. It dies with `context`; with NULL it lives until it is destroyed. */
 OXRT_API OxrtResult oxrtTextureCreate(OxrtContext context, const OxrtTextureOptions* options, uint64_t* handle);
 OXRT_API OxrtResult oxrtTextureDestroy(OxrtContext context, uint64_t handle);
 
