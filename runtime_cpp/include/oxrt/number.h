@@ -49,7 +49,12 @@ template <class To, class From> requires(isFloating<From> && !isFloating<To> && 
         constexpr From limit = From(uint64_t(1) << (valueBits - 1)) * From(2);
         constexpr To highest = To((uint64_t(1) << (valueBits - 1)) - 1 + (uint64_t(1) << (valueBits - 1)));
         constexpr From lowest = isSigned<To> ? -limit : From(0);
-        return value >= limit ? highest : value > lowest ? To(value) : value == value ? To(lowest) : To(0);
+        constexpr From below = limit - limit * (isSame<From, float> ? From(5.9604645e-8) : From(1.1102230246251565e-16));
+        /* step by step, without branches: they would cost more than the steps, and keep the compiler from vectorising what is around */
+        const From raised = value > lowest ? value : lowest;
+        const To truncated = To(raised < limit ? raised : below);
+        const To saturated = value >= limit ? highest : truncated;
+        return value == value ? saturated : To(0);
     }
 };
 template <class From> struct ScalarConverter<bool, From> {
