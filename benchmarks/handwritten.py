@@ -24,7 +24,10 @@ KERNELS = Path(__file__).resolve().parent / "kernels"
 BUILD = ROOT / "build" / "benchmarks"
 INCLUDE = ROOT / "runtime_cpp" / "include"
 # those of compiled pipelines, exceptions aside: the kernels start threads through the C++ library
-FLAGS = ["-std=c++20", "-O3", "-march=native", "-ffp-contract=off", "-fwrapv", "-fno-math-errno", "-fno-trapping-math", "-fPIC", "-shared", "-fno-rtti", "-fvisibility=hidden", "-w"]  # fmt: skip
+FLAGS = [
+    *("-std=c++20", "-O3", "-march=native", "-ffp-contract=off", "-fwrapv", "-fno-math-errno", "-fno-trapping-math"),
+    *("-fPIC", "-shared", "-fno-rtti", "-fvisibility=hidden", "-w"),
+]
 _COMPILERS = (("g++",), ("clang++", "clang++-19", "clang++-18", "clang++-17", "clang++-16"))
 
 _SCENE_FUNCTIONS = """

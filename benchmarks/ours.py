@@ -96,7 +96,8 @@ class _Maker:
 def _primary(make: _Maker, scene: Scene) -> Programs:
     mesh = make.shader.Mesh(triangles=scene.triangles, normals=scene.normals)
     hits = [(make.group(closesthit="normal"), mesh)]
-    return Programs(make.group(raygen="primary"), [make.group(miss="black")], hits, {}, [ox.BuildInputTriangles(scene.vertices, scene.triangles)])
+    inputs = [ox.BuildInputTriangles(scene.vertices, scene.triangles)]
+    return Programs(make.group(raygen="primary"), [make.group(miss="black")], hits, {}, inputs)
 
 
 def _ambient_occlusion(make: _Maker, scene: Scene) -> Programs:

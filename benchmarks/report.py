@@ -90,10 +90,10 @@ def _limits(results: Results) -> str:
     header = ["rays", "million", "single, ns", "packet, ns", "coherent, ns"]
     parts = []
     for limit in results.limits:
-        lines = [
-            [one.name, f"{one.rays / 1e6:.2f}", *(f"{seconds / max(one.rays, 1) * 1e9:.0f}" for seconds in (one.single, one.packet, one.coherent))]
-            for one in limit.classes
-        ]
+        lines = []
+        for one in limit.classes:
+            nanoseconds = [seconds / max(one.rays, 1) * 1e9 for seconds in (one.single, one.packet, one.coherent)]
+            lines.append([one.name, f"{one.rays / 1e6:.2f}", *(f"{value:.0f}" for value in nanoseconds)])
         title = f"### {limit.workload}:{limit.scene}: at most {limit.mrays_per_second:.2f} Mrays/s on one thread"
         parts.append(title + "\n\n" + table(header, lines))
     return "\n\n".join(parts)
@@ -103,7 +103,8 @@ def _others(results: Results) -> list[str]:
     parts = []
     if results.compiles:
         lines = [
-            [one.shader, str(one.lanes), one.compiler, f"{one.cold:.2f}", f"{one.cxx:.2f}", f"{1e3 * one.cached:.1f}"] for one in results.compiles
+            [one.shader, str(one.lanes), one.compiler, f"{one.cold:.2f}", f"{one.cxx:.2f}", f"{1e3 * one.cached:.1f}"]
+            for one in results.compiles
         ]
         header = ["shader", "lanes", "compiler", "cold, s", "of it C++, s", "from cache, ms"]
         parts.append("## Compile times\n\n" + table(header, lines))
@@ -114,7 +115,8 @@ def _others(results: Results) -> list[str]:
         parts.append("## Empty launch\n\n" + table(["size", "threads", "lanes", "from C, us", "from Python, us"], lines))
     if results.memory:
         lines = [
-            [str(one.threads), *(f"{value:.0f}" for value in (one.ours, one.hand_written, one.interpreter, one.allowed))] for one in results.memory
+            [str(one.threads), *(f"{value:.0f}" for value in (one.ours, one.hand_written, one.interpreter, one.allowed))]
+            for one in results.memory
         ]
         header = ["threads", "ours, MiB", "hand-written, MiB", "bare interpreter, MiB", "allowed, MiB"]
         parts.append("## Peak memory, ambient occlusion of the dragon\n\n" + table(header, lines))

@@ -215,7 +215,7 @@ def leaf_scene(count: int = 30000) -> Scene:
     u, v = axes[:, :, 0] * half, axes[:, :, 1] * half
     vertices = np.stack([centres - u - v, centres + u - v, centres + u + v, centres - u + v], 1).reshape(-1, 3)
     quads = 4 * np.arange(count, dtype=np.uint32)[:, None]
-    triangles = np.stack([quads + [0, 1, 2], quads + [0, 2, 3]], 1).reshape(-1, 3).astype(np.uint32)
+    triangles = np.stack([quads + np.uint32([0, 1, 2]), quads + np.uint32([0, 2, 3])], 1).reshape(-1, 3).astype(np.uint32)
     return Scene(
         name="leaves",
         camera=pinhole((0.3, 0.2, 2.6), (-0.3, -0.2, -2.6), (0.0, 1.0, 0.0), 45.0),

@@ -49,7 +49,10 @@ WORKLOADS = (
     Workload(
         "ambient_occlusion", "ambient occlusion, 16 rays", "ambient_occlusion",
         ("ambient_occlusion_scalar", "ambient_occlusion_scalar_ng"),
-        ("ambient_occlusion_packet", "ambient_occlusion_packet_ng", "ambient_occlusion_coherent", "ambient_occlusion_adaptive", "ambient_occlusion_samples", "ambient_occlusion_single"),
+        (
+            *("ambient_occlusion_packet", "ambient_occlusion_packet_ng", "ambient_occlusion_coherent"),
+            *("ambient_occlusion_adaptive", "ambient_occlusion_samples", "ambient_occlusion_single"),
+        ),
         MESHES, 4,
         {"sibenik": 1.8, "sponza": 1.8, "dragon": 1.15}, {"sibenik": 2.2, "sponza": 2.2, "dragon": 1.3},
     ),

@@ -203,11 +203,11 @@ class LaneFunction:
         text = self._types.widened(value, local.type) if is_varying and not varies else value
         if id(statement) in self._declarations.at_statement:
             self._homes[local.name] = self._mask
-            self._writer.line(f"{self._unread(local)}{self._type(local)} {name} = {text};", statement.span)  # type: ignore[union-attr]
+            self._writer.line(f"{self._unread(local)}{self._type(local)} {name} = {text};", statement.span)
         elif is_varying and not self._is_plain(local):
-            self._writer.line(f"oxrt::assign({self._mask}, {name}, {text});", statement.span)  # type: ignore[union-attr]
+            self._writer.line(f"oxrt::assign({self._mask}, {name}, {text});", statement.span)
         else:
-            self._writer.line(f"{name} = {text};", statement.span)  # type: ignore[union-attr]
+            self._writer.line(f"{name} = {text};", statement.span)
 
     # ---- branches ------------------------------------------------------------------------------------------------------------
 
@@ -263,7 +263,8 @@ class LaneFunction:
                 outer, self._dialect.mask = self._mask, turn
                 condition = self._expressions.text(statement.condition)
                 self._dialect.mask = outer
-                self._writer.line(f"{turn} = {loop} = {loop} & {condition if condition.isidentifier() else f'({condition})'};", statement.span)
+                operand = condition if condition.isidentifier() else f"({condition})"
+                self._writer.line(f"{turn} = {loop} = {loop} & {operand};", statement.span)
                 with self._writer.block(f"if (oxrt::none({turn}))"):
                     self._writer.line("break;")
                 self._masked(turn, statement.body)
@@ -373,7 +374,7 @@ class LaneFunction:
         """Takes lanes that leave the function out of the loops around."""
         loops = [loop for loop in self._loops if loop is not None]
         if loops:
-            self._writer.line(f"returned |= {lanes};", statement.span)  # type: ignore[union-attr]
+            self._writer.line(f"returned |= {lanes};", statement.span)
             for loop in loops:
                 self._writer.line(f"{loop} = oxrt::without({loop}, {lanes});")
 

@@ -143,7 +143,8 @@ class LaneCalls:
         offered = statement.arguments[2:]
         words = arguments[:2]
         if len(offered) == 1 and isinstance(offered[0].type, Struct):
-            words.append(f"oxrt::attributesToLanes<{self._types.types.struct(offered[0].type)}, LANES>({self._expressions.wide(offered[0])})")
+            struct = self._types.types.struct(offered[0].type)
+            words.append(f"oxrt::attributesToLanes<{struct}, LANES>({self._expressions.wide(offered[0])})")
         elif offered:
             words.append(f"oxrt::attributeLanes<LANES>({', '.join(self._expressions.wide(argument) for argument in offered)})")
         return f"oxrt::reportIntersection<Programs>({', '.join([self._names.trace, self._mask, *words])})"

@@ -162,7 +162,8 @@ class SpmdFile(PipelineFile):
             with self._writer.block(f"void {owner}::{FUNCTIONS[kind]}(Rays& trace, Mask mask, {payload})"):
                 self._writer.line(f"const Wide<int32_t> program = oxrt::recordPrograms(trace.records, mask, {SLOTS[kind]});")
                 for function, call in calls:
-                    self._writer.line(f"if (const Mask own = mask & (program == int32_t({self._dispatch.number(function)})); oxrt::any(own))")
+                    number = self._dispatch.number(function)
+                    self._writer.line(f"if (const Mask own = mask & (program == int32_t({number})); oxrt::any(own))")
                     with self._writer.indented():
                         self._writer.line(f"{call};")
                 if self._pipeline.options.validation:
@@ -244,11 +245,12 @@ class SpmdFile(PipelineFile):
             for parameter in program.parameters
             if parameter.role is ParameterRole.RECORD
         ]
-        with self._writer.block(f"void run_{self._signatures.function(program.name)}(OxrtThread* thread, const OxrtTile* tile)"):
-            with self._writer.block(f"oxrt::runBlocks<LANES>(*thread, *tile, [{'thread' if records else ''}](Lanes& lanes, Mask mask)", tail="});"):
-                self._writer.line(f"{self._clones.name(clone)}({', '.join(['lanes', 'mask', *records])});")
-                if self._throws:
-                    self._run_exceptions()
+        head = f"void run_{self._signatures.function(program.name)}(OxrtThread* thread, const OxrtTile* tile)"
+        loop = f"oxrt::runBlocks<LANES>(*thread, *tile, [{'thread' if records else ''}](Lanes& lanes, Mask mask)"
+        with self._writer.block(head), self._writer.block(loop, tail="});"):
+            self._writer.line(f"{self._clones.name(clone)}({', '.join(['lanes', 'mask', *records])});")
+            if self._throws:
+                self._run_exceptions()
         self._writer.line()
 
     def _run_exceptions(self) -> None:

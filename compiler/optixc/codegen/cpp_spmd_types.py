@@ -59,7 +59,8 @@ class WideTypes:
                     writer.line(f"{self.name(field.type, True)} {names[field.name]};")
                 function, structs = ("f", " s") if struct.fields else ("", "")
                 calls = " ".join(f"f(s.{names[field.name]}...);" for field in struct.fields)
-                writer.line(f"template <class F, class... S> static OXRT_INLINE void each(const F& {function}, S&...{structs}) {{ {calls} }}")
+                head = f"static OXRT_INLINE void each(const F& {function}, S&...{structs})"
+                writer.line(f"template <class F, class... S> {head} {{ {calls} }}")
             writer.line()
 
     def _wide(self, struct: Struct) -> str:

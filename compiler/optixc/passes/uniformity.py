@@ -212,7 +212,8 @@ class _FunctionAnalysis:
 
     def _place_varies(self, place: Expr) -> bool:
         """Whether different lanes store to different parts."""
-        return any(self.varies(operand) for operand in operands(place) if not isinstance(operand, LocalRef)) and place_root(place) is not None
+        indices = [operand for operand in operands(place) if not isinstance(operand, LocalRef)]
+        return any(self.varies(index) for index in indices) and place_root(place) is not None
 
     def _assigned(self, name: str, varies: bool, path: Region) -> None:
         home = self._homes.get(name, ())
