@@ -240,13 +240,15 @@ class SpmdFile(PipelineFile):
     def _lane_entry(self, program: Function) -> None:
         """The loop over the blocks of a tile."""
         clone = self._clones.analysis.program(program)
+        # Where exception programs run behind it, `thread` is the one that threw.
+        thread = "caller" if self._throws else "thread"
         records = [
-            f"oxrt::recordAt<{self._types.name(parameter.local.type)}>(thread->launch->raygenRecord)"
+            f"oxrt::recordAt<{self._types.name(parameter.local.type)}>({thread}->launch->raygenRecord)"
             for parameter in program.parameters
             if parameter.role is ParameterRole.RECORD
         ]
-        head = f"void run_{self._signatures.function(program.name)}(OxrtThread* thread, const OxrtTile* tile)"
-        loop = f"oxrt::runBlocks<LANES>(*thread, *tile, [{'thread' if records else ''}](Lanes& lanes, Mask mask)"
+        head = f"void run_{self._signatures.function(program.name)}(OxrtThread* {thread}, const OxrtTile* tile)"
+        loop = f"oxrt::runBlocks<LANES>(*{thread}, *tile, [{thread if records else ''}](Lanes& lanes, Mask mask)"
         with self._writer.block(head), self._writer.block(loop, tail="});"):
             self._writer.line(f"{self._clones.name(clone)}({', '.join(['lanes', 'mask', *records])});")
             if self._throws:

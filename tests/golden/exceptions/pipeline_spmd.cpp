@@ -154,8 +154,8 @@ void DistanceProgramsLanes::closestHit(Rays& trace, Mask mask, Payload& payload)
         closesthit_throwing_lanes(trace, own, payload);
 }
 
-void run_raygen_throwing(OxrtThread* thread, const OxrtTile* tile) {
-    oxrt::runBlocks<LANES>(*thread, *tile, [](Lanes& lanes, Mask mask) {
+void run_raygen_throwing(OxrtThread* caller, const OxrtTile* tile) {
+    oxrt::runBlocks<LANES>(*caller, *tile, [](Lanes& lanes, Mask mask) {
         raygen_throwing_lanes(lanes, mask);
         oxrt::eachLane(lanes.thrown, [&](int lane) {
             OxrtThread* thread = &oxrt::throwingLane(lanes, lane);
