@@ -196,9 +196,12 @@ def make_job(embree: Embree, built: EmbreeScene, workload: Workload, threads: in
     return job
 
 
-def hand_written(embree: Embree, built: EmbreeScene, workload: Workload, form: str, compiler: str, threads: int) -> HandWritten:
-    """The form `form` of a workload, built with `compiler`."""
+def hand_written(
+    embree: Embree, built: EmbreeScene, workload: Workload, form: str, compiler: str, threads: int, tuned: bool = False
+) -> HandWritten:
+    """The form `form` of a workload, built with `compiler`; `tuned` with rays stored as Embree loads them (see kernels/trace.h)."""
     width, height = workload.launch_size
     image = np.zeros((height, width, 4), np.float32)
-    function, library = embree.kernel(workload.source, form, compiler)
-    return HandWritten(f"{form} {compiler}", function, make_job(embree, built, workload, threads, image), image, (library, built))
+    function, library = embree.kernel(workload.source, form, compiler, ("-DBENCH_TUNED",) if tuned else ())
+    job = make_job(embree, built, workload, threads, image)
+    return HandWritten(f"{form}{' tuned' if tuned else ''} {compiler}", function, job, image, (library, built))

@@ -19,12 +19,13 @@ QUALIFYING_ROUNDS = 3
 
 @dataclass
 class Entry:
-    """One contender's result; speed-ups are over the best hand-written kernels of the row."""
+    """One contender's result; speed-ups are over the best hand-written kernels of the row, the tuned one apart."""
 
     name: str
     mrays_per_second: float
     spread: float
     over_scalar: float
+    over_tuned: float
     over_packet: float
     differing_pixels: float
 
@@ -40,6 +41,7 @@ class Row:
     must: float
     aim: float
     best_scalar: str
+    best_tuned: str
     best_packet: str
     entries: list[Entry] = field(default_factory=list)
     failures: list[str] = field(default_factory=list)
@@ -70,8 +72,10 @@ def differing(image: Floats, reference: Floats) -> float:
     return float(np.mean(np.abs(image[..., :3] - reference[..., :3]).max(-1) > tolerance))
 
 
-def _forms(embree: Embree, built: EmbreeScene, workload: Workload, threads: int, names: Sequence[str]) -> list[HandWritten]:
-    return [hand_written(embree, built, workload, form, compiler, threads) for form in names for compiler in compilers()]
+def _forms(
+    embree: Embree, built: EmbreeScene, workload: Workload, threads: int, names: Sequence[str], tuned: bool = False
+) -> list[HandWritten]:
+    return [hand_written(embree, built, workload, form, compiler, threads, tuned) for form in names for compiler in compilers()]
 
 
 def _our_contenders(context: ox.DeviceContext, scene: Scene, workload: Workload, settings: Settings, row: Row) -> list[Ours]:
@@ -91,20 +95,21 @@ def measure_row(embree: Embree, context: ox.DeviceContext, workload: Workload, s
     built = EmbreeScene(embree, scene, with_light=workload.name in ("path", "heavy"))
     scalars = _forms(embree, built, workload, threads, workload.scalar_forms)
     packets = _forms(embree, built, workload, threads, workload.packet_forms)
-    qualified: list[HandWritten] = [*scalars, *packets]
+    tuned = _forms(embree, built, workload, threads, workload.scalar_forms, tuned=True)
+    qualified: list[HandWritten] = [*scalars, *tuned, *packets]
     if not settings.all_forms:
-        heats = interleave([*scalars, *packets], QUALIFYING_ROUNDS, settings.clock)
-        best_packets = sorted(packets, key=lambda contender: heats.median(contender.name))[:2]
-        best_scalars = sorted(scalars, key=lambda contender: heats.median(contender.name))[:2]
-        qualified = [*best_scalars, *best_packets]
-    row = Row(workload.name, scene_name, threads, 0, workload.must[scene_name], workload.aim[scene_name], "", "")
+        heats = interleave(qualified, QUALIFYING_ROUNDS, settings.clock)
+        qualified = [one for forms in (scalars, tuned, packets) for one in sorted(forms, key=lambda one: heats.median(one.name))[:2]]
+    row = Row(workload.name, scene_name, threads, 0, workload.must[scene_name], workload.aim[scene_name], "", "", "")
     own = _our_contenders(context, scene, workload, settings, row)
     contenders: list[Contender] = [*qualified, *own]
     timings = interleave(contenders, settings.rounds, settings.clock)
     row.rays = scalars[0].rays
     row.best_scalar = timings.fastest([one.name for one in qualified if one in scalars])
+    row.best_tuned = timings.fastest([one.name for one in qualified if one in tuned])
     row.best_packet = timings.fastest([one.name for one in qualified if one in packets])
-    for one in [*qualified, *own]:
+    everyone: list[HandWritten | Ours] = [*qualified, *own]
+    for one in everyone:
         row.entries.append(_entry(one, timings, row, scalars[0].image))
     return row
 
@@ -115,6 +120,7 @@ def _entry(one: HandWritten | Ours, timings: Timings, row: Row, reference: Float
         mrays_per_second=row.rays / timings.median(one.name) / 1e6,
         spread=timings.spread(one.name),
         over_scalar=timings.speed_up(one.name, row.best_scalar),
+        over_tuned=timings.speed_up(one.name, row.best_tuned),
         over_packet=timings.speed_up(one.name, row.best_packet),
         differing_pixels=differing(one.image, reference),
     )

@@ -47,21 +47,20 @@ def row_details(row: Row) -> str:
             f"{entry.mrays_per_second:.2f}",
             f"{100 * entry.spread:.0f} %",
             f"{entry.over_scalar:.2f}",
+            f"{entry.over_tuned:.2f}",
             f"{entry.over_packet:.2f}",
             f"{entry.differing_pixels:.1e}",
         ]
         for entry in row.entries
     ]
     title = f"### {row.workload}:{row.scene}, {row.threads} thread{'s' if row.threads > 1 else ''}, {row.rays / 1e6:.2f} million rays\n\n"
-    header = ["kernel", "Mrays/s", "spread", "x best scalar", "x best packet", "pixels that differ"]
+    header = ["kernel", "Mrays/s", "spread", "x best scalar", "x best tuned", "x best packet", "pixels that differ"]
     return title + table(header, lines) + "".join(f"\n\n{failure}" for failure in row.failures)
 
 
-def _ratio(row: Row, prefix: str, packet: bool = False) -> str:
-    found = [entry for entry in row.entries if entry.name == prefix or entry.name.startswith(prefix + " ")]
-    if not found:
-        return "-"
-    return f"{max(entry.over_packet if packet else entry.over_scalar for entry in found):.2f}"
+def _ratio(row: Row, prefix: str, over: str = "scalar") -> str:
+    found = [getattr(entry, f"over_{over}") for entry in row.entries if entry.name == prefix or entry.name.startswith(prefix + " ")]
+    return f"{max(found):.2f}" if found else "-"
 
 
 def summary(rows: list[Row]) -> str:
@@ -78,11 +77,13 @@ def summary(rows: list[Row]) -> str:
                 f"{scalar.mrays_per_second:.2f}" if scalar else "-",
                 f"{packets[0]:.2f}" if packets else "-",
                 *(_ratio(row, f"ours {lanes}") for lanes in (1, 8, 16)),
+                _ratio(row, "ours 1", "tuned"),
                 f"{row.must:g} / {row.aim:g}",
-                _ratio(row, "ours 16", packet=True),
+                _ratio(row, "ours 16", "packet"),
             ]
         )
-    header = ["workload", "threads", "best scalar, Mrays/s", "best packet", "ours 1", "ours 8", "ours 16", "must / aim", "ours 16 / packet"]
+    header = ["workload", "threads", "best scalar, Mrays/s", "best packet", "ours 1", "ours 8", "ours 16"]
+    header += ["ours 1 / tuned", "must / aim", "ours 16 / packet"]
     return table(header, lines)
 
 
