@@ -65,6 +65,7 @@ from optixc.host.vectors import (
     ushort3,
     ushort4,
 )
+from optixc.interpret.launch import interpret
 from optixc.options import PipelineCompileOptions
 from optixc.toolchain import ToolchainError
 from optixc.version import __version__

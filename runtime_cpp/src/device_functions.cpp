@@ -67,6 +67,12 @@ void give(void* result, const T& value)
     PURE2(#name ":float4", oxrt::function, float4, float4) PURE2(#name ":double2", oxrt::function, double2, double2)          \
     PURE2(#name ":double3", oxrt::function, double3, double3) PURE2(#name ":double4", oxrt::function, double4, double4)
 
+// Functions that change the outgoing hit object, whose address the interpreter gives.
+HitObject& changeable(State state)
+{
+    return *static_cast<HitObject*>(const_cast<void*>(state));
+}
+
 // The functions that read the hit, once for the ray in flight and once for the outgoing hit object.
 #define OF_HIT0(name, function) OF0(Ray, get_##name, get##function) OF0(HitObject, hit_object_get_##name, hitObjectGet##function)
 #define OF_HIT_TRANSFORM(name, function)                                       \
@@ -149,6 +155,15 @@ const std::unordered_map<std::string_view, OxrtDeviceFunction>& functions()
         OF_HIT_TRANSFORM(vector_from_object_to_world_space, VectorFromObjectToWorldSpace)
         OF_HIT_TRANSFORM(normal_from_world_to_object_space, NormalFromWorldToObjectSpace)
         OF_HIT_TRANSFORM(normal_from_object_to_world_space, NormalFromObjectToWorldSpace)
+
+        {"make_nop_hit_object", [](State state, Arguments, void*) { makeNopHitObject(changeable(state)); }},
+        {"hit_object_set_sbt_record_index",
+         [](State state, Arguments a, void*) { hitObjectSetSbtRecordIndex(changeable(state), take<uint32_t>(a, 0)); }},
+        {"make_miss_hit_object",
+         [](State state, Arguments a, void*) {
+             makeMissHitObject(changeable(state), take<uint32_t>(a, 0), take<float3>(a, 1), take<float3>(a, 2), take<float>(a, 3),
+                               take<float>(a, 4), take<float>(a, 5), take<uint32_t>(a, 6));
+         }},
 
         PURE1("get_primitive_type_of_kind", oxrt::getPrimitiveType, uint32_t)
         PURE1("is_front_face_hit_of_kind", oxrt::isFrontFaceHit, uint32_t)

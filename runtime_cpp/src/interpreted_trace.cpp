@@ -8,6 +8,7 @@ namespace oxrt {
 
 namespace {
 
+template <bool USES_TIME>
 struct Interpreted : NoPrograms {
     struct Payload {
         uint32_t words[OXRT_PAYLOAD_WORDS];
@@ -17,7 +18,7 @@ struct Interpreted : NoPrograms {
     static constexpr bool hasIntersection = true;
     static constexpr bool hasMiss = true;
     static constexpr bool mayThrow = true;
-    static constexpr bool usesTime = true;
+    static constexpr bool usesTime = USES_TIME;
 
     static void closestHit(Ray& ray, Payload&, const OxrtRecordHeader& record)
     {
@@ -43,17 +44,34 @@ float3 vectorOf(const float (&numbers)[3])
     return {numbers[0], numbers[1], numbers[2]};
 }
 
-Interpreted::Payload& payloadOf(uint32_t* words)
+using WithTime = Interpreted<true>;
+using WithoutTime = Interpreted<false>;
+
+template <class Programs>
+typename Programs::Payload& payloadOf(uint32_t* words)
 {
-    return *reinterpret_cast<Interpreted::Payload*>(words);
+    return *reinterpret_cast<typename Programs::Payload*>(words);
+}
+
+template <class Programs>
+void traceAs(InterpretedThread& owner, const OxrtRayArguments& a, uint32_t* payload)
+{
+    trace<Programs, uint32_t>(owner.thread, a.handle, vectorOf(a.origin), vectorOf(a.direction), a.tmin, a.tmax, a.time, a.visibilityMask,
+                              a.rayFlags, a.sbtOffset, a.sbtStride, a.missIndex, payloadOf<Programs>(payload));
+}
+
+template <class Programs>
+void traverseAs(InterpretedThread& owner, HitObject& object, const OxrtRayArguments& a, uint32_t* payload)
+{
+    traverse<Programs, uint32_t>(owner.thread, object, a.handle, vectorOf(a.origin), vectorOf(a.direction), a.tmin, a.tmax, a.time,
+                                 a.visibilityMask, a.rayFlags, a.sbtOffset, a.sbtStride, a.missIndex, payloadOf<Programs>(payload));
 }
 
 } // namespace
 
-void traceInterpreted(InterpretedThread& owner, const OxrtRayArguments& a, uint32_t* payload)
+void traceInterpreted(InterpretedThread& owner, const OxrtRayArguments& arguments, uint32_t* payload)
 {
-    trace<Interpreted, uint32_t>(owner.thread, a.handle, vectorOf(a.origin), vectorOf(a.direction), a.tmin, a.tmax, a.time,
-                                 a.visibilityMask, a.rayFlags, a.sbtOffset, a.sbtStride, a.missIndex, payloadOf(payload));
+    owner.usesTime ? traceAs<WithTime>(owner, arguments, payload) : traceAs<WithoutTime>(owner, arguments, payload);
 }
 
 void* newHitObject()
@@ -66,16 +84,15 @@ void freeHitObject(void* object)
     delete static_cast<HitObject*>(object);
 }
 
-void traverseInterpreted(InterpretedThread& owner, void* object, const OxrtRayArguments& a, uint32_t* payload)
+void traverseInterpreted(InterpretedThread& owner, void* object, const OxrtRayArguments& arguments, uint32_t* payload)
 {
-    traverse<Interpreted, uint32_t>(owner.thread, *static_cast<HitObject*>(object), a.handle, vectorOf(a.origin), vectorOf(a.direction),
-                                    a.tmin, a.tmax, a.time, a.visibilityMask, a.rayFlags, a.sbtOffset, a.sbtStride, a.missIndex,
-                                    payloadOf(payload));
+    auto& outgoing = *static_cast<HitObject*>(object);
+    owner.usesTime ? traverseAs<WithTime>(owner, outgoing, arguments, payload) : traverseAs<WithoutTime>(owner, outgoing, arguments, payload);
 }
 
 void invokeInterpreted(InterpretedThread& owner, void* object, uint32_t* payload)
 {
-    invoke<Interpreted>(owner.thread, *static_cast<HitObject*>(object), payloadOf(payload));
+    invoke<WithTime>(owner.thread, *static_cast<HitObject*>(object), payloadOf<WithTime>(payload));
 }
 
 } // namespace oxrt
@@ -89,7 +106,7 @@ int oxrtInterpreterReport(void* ray, float t, uint32_t kind, const uint32_t* att
         uint32_t words[8];
     } held = {};
     for (unsigned i = 0; i < count && i < 8; ++i) held.words[i] = attributes[i];
-    const bool accepted = oxrt::reportIntersection<oxrt::Interpreted>(found, t, kind, held);
+    const bool accepted = oxrt::reportIntersection<oxrt::WithTime>(found, t, kind, held);
     return oxrt::hasEnded(found) ? 2 : accepted;
 }
 

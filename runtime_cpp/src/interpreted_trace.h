@@ -12,6 +12,7 @@ struct InterpretedThread {
     OxrtThread thread; // first: device code hands out its address
     OxrtProgramCallback callback;
     void* data;
+    bool usesTime;
 };
 
 void traceInterpreted(InterpretedThread& owner, const OxrtRayArguments& arguments, uint32_t* payload);

@@ -27,7 +27,7 @@ struct OxrtInterpreterImpl {
 using namespace oxrt;
 
 OxrtResult oxrtInterpreterCreate(OxrtPipeline pipeline, const void* params, size_t paramsSize, const OxrtShaderBindingTable* sbt,
-                                 uint32_t width, uint32_t height, uint32_t depth, OxrtProgramCallback callback, void* data,
+                                 uint32_t width, uint32_t height, uint32_t depth, int usesMotion, OxrtProgramCallback callback, void* data,
                                  OxrtInterpreter* interpreter)
 {
     return guard([&] {
@@ -42,6 +42,7 @@ OxrtResult oxrtInterpreterCreate(OxrtPipeline pipeline, const void* params, size
         made->owner.thread.runtime = made->launch.get();
         made->owner.callback = callback;
         made->owner.data = data;
+        made->owner.usesTime = usesMotion != 0;
         made->ticket = made->pipeline->context->beginLaunch();
         *interpreter = made.release();
     });

@@ -25,9 +25,10 @@ def header_declarations(text: str) -> str:
 
 @cache
 def ffi() -> Any:
-    """The declarations of oxrt.h."""
+    """The declarations of oxrt.h and interpret.h."""
     made = cffi.FFI()
-    made.cdef(header_declarations((include_folder() / "oxrt" / "oxrt.h").read_text()))
+    for header in ("oxrt.h", "interpret.h"):
+        made.cdef(header_declarations((include_folder() / "oxrt" / header).read_text()))
     return made
 
 

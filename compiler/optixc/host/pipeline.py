@@ -13,6 +13,7 @@ from optixc.host import bound_values, library, structs
 from optixc.host.context import Context
 from optixc.host.groups import ProgramGroup, Record, check_layout
 from optixc.host.sbt import ShaderBindingTable
+from optixc.options import PipelineCompileOptions
 
 STEP_MS = 50
 FAULT_BOUND_VALUE = 3
@@ -64,8 +65,10 @@ class Pipeline:
         params: dict[str, Any] | None,
         report: dict[str, Any],
         programs: Sequence[dict[str, Any]],
+        options: PipelineCompileOptions | None = None,
     ) -> None:
         self._pipeline: Any = None
+        self.options = options or PipelineCompileOptions()
         self._context = context
         self._groups = tuple(groups)
         self._params = params
@@ -90,6 +93,18 @@ class Pipeline:
 
     def launch(self, params: Any, sbt: ShaderBindingTable, width: int, height: int = 1, depth: int = 1) -> None:
         """Runs width x height x depth launch indices and returns when all are done; Ctrl-C stops it within a second."""
+        self._check_launch(params, sbt)
+        with self._lock:
+            data, size, table = self._pack(params, sbt)
+            self._run(data, size, table, width, height, depth)
+
+    def launch_inputs(self, params: Any, sbt: ShaderBindingTable) -> tuple[Any, Any, int, Any]:
+        """What a launch would give the runtime: the pipeline, the bytes of the parameters, their number, the table."""
+        self._check_launch(params, sbt)
+        with self._lock:
+            return (self._pipeline, *self._pack(params, sbt))
+
+    def _check_launch(self, params: Any, sbt: ShaderBindingTable) -> None:
         context = self._context
         if context._handle is None or self._pipeline is None or context._generation != library._Process.generation:
             self._refuse_dead()
@@ -97,16 +112,26 @@ class Pipeline:
             self._check_params(params)
         if type(sbt) is not ShaderBindingTable:
             raise InvalidValueError(f"sbt takes a ShaderBindingTable, not {type(sbt).__name__}")
-        with self._lock:
-            table = sbt.c_table(self)
-            if self._params is None:
-                data, size = self._null, 0
-            else:
-                packed = params.packed()
-                if self._checked_bound_values:
-                    self._check_bound_values(packed)
-                data, size = self._from_buffer(packed), len(packed)
-            self._run(data, size, table, width, height, depth)
+
+    def _pack(self, params: Any, sbt: ShaderBindingTable) -> tuple[Any, int, Any]:
+        table = sbt.c_table(self)
+        if self._params is None:
+            return self._null, 0, table
+        packed = params.packed()
+        if self._checked_bound_values:
+            self._check_bound_values(packed)
+        return self._from_buffer(packed), len(packed), table
+
+    @property
+    def groups(self) -> tuple[ProgramGroup, ...]:
+        """The program groups that the pipeline was made of."""
+        return self._groups
+
+    def program_number(self, name: str) -> int:
+        """The number of a program in the headers of records; -1 if the pipeline does not have it."""
+        found = library.ffi().new("int32_t*")
+        library.check(self._lib.oxrtPipelineFindProgram(self._pipeline, name.encode(), found))
+        return int(found[0])
 
     def report(self) -> PipelineReport:
         """What was compiled in and why, compile seconds and cache hit, trace forms."""
