@@ -35,6 +35,7 @@ from optixc.host.vectors import (
     char3,
     char4,
     double2,
+from optixc.host.transforms import Transform
     double3,
     double4,
     float2,
@@ -105,6 +106,7 @@ __all__ = [
     "char2",
     "char3",
     "char4",
+    "Transform",
     "copy",
     "device",
     "double2",

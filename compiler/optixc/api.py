@@ -12,6 +12,7 @@ from optixc.cache import Cache
 from optixc.enums_program import ProgramGroupKind
 from optixc.enums_scene import BuildFlags
 from optixc.errors import InvalidValueError
+from optixc.host import transforms
 from optixc.host.accel import Accel
 from optixc.host.bound_values import NO_ANNOTATION, merge, plain_values
 from optixc.host.context import LOG_PRINT, LOG_WARNING, Context, LogCallback
@@ -128,3 +129,16 @@ class DeviceContext(Context):
     ) -> Accel:
         """Builds a GAS from geometry inputs (all of one type) or an IAS from one instances input."""
         return Accel(self, inputs, build_flags, motion_options)
+
+    def static_transform(self, child: Any, transform: Any) -> transforms.Transform:
+        """A traversable: `child` (accel, transform or handle) under a 3x4 matrix."""
+        return transforms.static_transform(self, child, transform)
+
+    def matrix_motion_transform(self, child: Any, keys: Any, motion_options: MotionOptions | None = None) -> transforms.Transform:
+        """A traversable: `child` under matrices of shape (num_keys, 3, 4), blended by element; by default over the times 0 to 1."""
+        return transforms.matrix_motion_transform(self, child, keys, motion_options)
+
+    def srt_motion_transform(self, child: Any, keys: Any, motion_options: MotionOptions | None = None) -> transforms.Transform:
+        """A traversable: `child` under scale, rotation and translation of shape (num_keys, 16), blended by component and the quaternion
+        normalised; members in OptiX's order sx a b pvx sy c pvy sz pvz qx qy qz qw tx ty tz. By default over the times 0 to 1."""
+        return transforms.srt_motion_transform(self, child, keys, motion_options)

@@ -1,6 +1,8 @@
 // See accel.h.
 #include "accel.h"
 
+#include "matrix.h"
+#include "motion.h"
 #include "objects.h"
 
 #include <algorithm>
@@ -26,11 +28,27 @@ void checkOptions(const OxrtAccelBuildOptions& options)
     constexpr std::uint32_t both = OXRT_BUILD_FLAG_PREFER_FAST_TRACE | OXRT_BUILD_FLAG_PREFER_FAST_BUILD;
     if ((options.buildFlags & both) == both)
         fail(OXRT_ERROR_INVALID_VALUE, "buildFlags holds PREFER_FAST_TRACE and PREFER_FAST_BUILD; choose one");
-    if (options.motion.numKeys > 1)
-        fail(OXRT_ERROR_NOT_SUPPORTED, "motion.numKeys is %u; this version builds static scenes only, give 0 or 1", options.motion.numKeys);
+    checkMotion(options.motion);
 }
 
-void checkInputs(std::span<const OxrtBuildInput> inputs)
+OxrtMotionOptions normalForm(const OxrtMotionOptions& motion)
+{
+    return motion.numKeys > 1 ? motion : OxrtMotionOptions{1, 0, 0.0f, 0.0f};
+}
+
+// Motion holds for all inputs of a GAS, so each of them gives every key.
+void checkKeys(const OxrtBuildInput& input, unsigned number, const OxrtMotionOptions& motion)
+{
+    const unsigned keys = std::max(1u, input.numKeys);
+    if (keys != motion.numKeys)
+        fail(OXRT_ERROR_INVALID_VALUE, "input %u has %u motion keys but the motion options say %u; give one array for each key", number, keys,
+             motion.numKeys);
+    if (keys > RTC_MAX_TIME_STEP_COUNT)
+        fail(OXRT_ERROR_NOT_SUPPORTED, "input %u has %u motion keys; Embree takes at most %d for geometry, move it by a transform instead",
+             number, keys, RTC_MAX_TIME_STEP_COUNT);
+}
+
+void checkInputs(std::span<const OxrtBuildInput> inputs, const OxrtMotionOptions& motion)
 {
     if (inputs.empty()) fail(OXRT_ERROR_INVALID_VALUE, "the list of build inputs is empty; give at least one");
     if (!inputs.data()) fail(OXRT_ERROR_INVALID_VALUE, "the build inputs are NULL but there are %zu", inputs.size());
@@ -42,6 +60,7 @@ void checkInputs(std::span<const OxrtBuildInput> inputs)
                  i, inputs[i].type, inputs[0].type);
         if (inputs[i].type == OXRT_BUILD_INPUT_INSTANCES) continue;
         Geometry::check(inputs[i], i);
+        checkKeys(inputs[i], i, motion);
         primitives += inputs[i].numPrimitives;
         records += inputs[i].numSbtRecords;
     }
@@ -69,14 +88,15 @@ std::shared_ptr<Accel> Accel::make(std::shared_ptr<Context> context, const OxrtA
                                    std::span<const OxrtBuildInput> inputs)
 {
     checkOptions(options);
-    checkInputs(inputs);
-    auto accel = std::make_shared<Accel>(context, options.buildFlags);
+    checkInputs(inputs, normalForm(options.motion));
+    auto accel = std::make_shared<Accel>(context, options);
     accel->build(inputs);
-    context->addAccel(accel->handle(), accel);
+    context->addTraversable(accel->handle(), accel);
     return accel;
 }
 
-Accel::Accel(std::shared_ptr<Context> owner, std::uint32_t flags) : context(std::move(owner)), buildFlags(flags)
+Accel::Accel(std::shared_ptr<Context> owner, const OxrtAccelBuildOptions& options)
+    : context(std::move(owner)), buildFlags(options.buildFlags), motion(normalForm(options.motion))
 {}
 
 Accel::~Accel()
@@ -87,7 +107,7 @@ Accel::~Accel()
 
 void Accel::invalidate()
 {
-    context->removeAccel(view.handle);
+    context->removeTraversable(view.handle);
     context->traversables.remove(view.handle);
     if (instances) instances->removeHandles(*context);
 }
@@ -95,9 +115,8 @@ void Accel::invalidate()
 void Accel::build(std::span<const OxrtBuildInput> inputs)
 {
     const auto begin = std::chrono::steady_clock::now();
-    view.keyCount = 1;
     if (inputs[0].type == OXRT_BUILD_INPUT_INSTANCES)
-        instances = std::make_unique<Instances>(*context, instancesOf(inputs[0]));
+        instances = std::make_unique<Instances>(*context, instancesOf(inputs[0]), motion);
     else
         buildGeometries(inputs);
 
@@ -154,17 +173,33 @@ void Accel::setUpScene()
 void Accel::commit()
 {
     const EmbreeLibrary& embree = context->embree;
-    embree.rtcCommitScene(scene);
+    // On a device of one thread, where another device has built before, TBB would leave a worker that spins for ever.
+    if (context->threads == 1)
+        embree.rtcJoinCommitScene(scene);
+    else
+        embree.rtcCommitScene(scene);
     context->checkEmbree("building the accel");
     embree.rtcGetSceneBounds(scene, &bounds);
+    describe();
+}
 
+void Accel::describe()
+{
     view.scene = scene;
-    view.needs = instances ? instances->needs() : 0;
+    view.needs = instances ? instances->needs() : motion.numKeys > 1 ? std::uint32_t(OXRT_SCENE_HAS_MOTION) : 0u;
     for (const auto& geometry : geometries) view.needs |= geometry->needs();
     view.type = instances ? OXRT_TRAVERSABLE_IAS : OXRT_TRAVERSABLE_GAS;
     view.geometries = geometryViews.data();
     view.geometryCount = static_cast<std::uint32_t>(geometryViews.size());
+    view.keyCount = motion.numKeys;
+    view.motionFlags = motion.flags;
+    view.timeBegin = motion.timeBegin;
+    view.timeEnd = motion.timeEnd;
+    view.buildFlags = buildFlags;
     view.instances = instances ? instances->data() : nullptr;
+    view.instanceTraversables = instances ? instances->traversables() : nullptr;
+    view.hasNativeInstances = instances && instances->isNative();
+    depth = instances ? instances->graphDepth() + 1 : 1;
     view.instanceCount = instances ? instances->size() : 0;
 }
 
@@ -197,7 +232,7 @@ void Accel::checkSameShape(std::span<const OxrtBuildInput> inputs) const
 void Accel::update(std::span<const OxrtBuildInput> inputs)
 {
     if (!updatable()) fail(OXRT_ERROR_INVALID_VALUE, "the accel was built without ALLOW_UPDATE; build it with that flag to update it");
-    checkInputs(inputs);
+    checkInputs(inputs, motion);
     checkSameShape(inputs);
 
     context->beginChange("updating an accel");
@@ -219,6 +254,11 @@ void Accel::update(std::span<const OxrtBuildInput> inputs)
     embreeBytes += context->embreeBytes - bytesBefore;
 }
 
+RTCBounds Accel::boundsDuring(float, float) const
+{
+    return isEmpty(bounds) ? emptyBounds() : bounds;
+}
+
 OxrtAccelInfo Accel::info() const
 {
     constexpr float infinity = std::numeric_limits<float>::infinity();
@@ -229,6 +269,7 @@ OxrtAccelInfo Accel::info() const
     for (int i = 0; i < 6; ++i) result.aabb[i] = empty ? (i < 3 ? infinity : -infinity) : box[i];
     result.isGas = view.type == OXRT_TRAVERSABLE_GAS;
     result.needs = view.needs;
+    result.hasNativeInstances = view.hasNativeInstances;
     result.memoryUsage = static_cast<std::uint64_t>(std::max<std::int64_t>(embreeBytes, 0)) + sizeof *this;
     result.primitiveCount = instances ? instances->size() : 0;
     if (instances) result.memoryUsage += instances->bytes();

@@ -7,6 +7,7 @@
 #include "oxrt/embree.h"
 #include "oxrt/oxrt.h"
 #include "oxrt/pipeline.h"
+#include "traversable.h"
 
 #include <cstdint>
 #include <memory>
@@ -15,41 +16,39 @@
 
 namespace oxrt {
 
-class Accel {
+class Accel final : public Traversable {
 public:
     // Throws Failure and leaves nothing behind.
     static std::shared_ptr<Accel> make(std::shared_ptr<Context> context, const OxrtAccelBuildOptions& options,
                                        std::span<const OxrtBuildInput> inputs);
     // Use make(): this only prepares.
-    Accel(std::shared_ptr<Context> owner, std::uint32_t flags);
-    ~Accel();
-    Accel(const Accel&) = delete;
-    Accel& operator=(const Accel&) = delete;
+    Accel(std::shared_ptr<Context> owner, const OxrtAccelBuildOptions& options);
+    ~Accel() override;
 
     void update(std::span<const OxrtBuildInput> inputs);
     // Makes the handles stale; may be called again.
     void invalidate();
 
     OxrtAccelInfo info() const;
-    const OxrtTraversableView& traversable() const { return view; }
-    std::uint64_t handle() const { return view.handle; }
+    RTCBounds boundsDuring(float begin, float end) const override;
 
     const std::shared_ptr<Context> context;
 
 private:
     void build(std::span<const OxrtBuildInput> inputs);
     void buildGeometries(std::span<const OxrtBuildInput> inputs);
+    void describe();
     void checkSameShape(std::span<const OxrtBuildInput> inputs) const;
     void setUpScene();
     void commit();
     bool updatable() const { return (buildFlags & OXRT_BUILD_FLAG_ALLOW_UPDATE) != 0; }
 
     const std::uint32_t buildFlags;
+    const OxrtMotionOptions motion; // numKeys 1 if static
     std::vector<std::unique_ptr<Geometry>> geometries;
     std::vector<OxrtGeometry> geometryViews;
     std::unique_ptr<Instances> instances;
     RTCScene scene = nullptr;
-    OxrtTraversableView view = {};
     RTCBounds bounds = {};
     std::int64_t embreeBytes = 0;
 };

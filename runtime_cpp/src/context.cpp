@@ -7,6 +7,7 @@
 #include "pipeline.h"
 #include "texture.h"
 #include "trace_services.h"
+#include "transform.h"
 
 #include <algorithm>
 #include <cmath>
@@ -183,23 +184,23 @@ void Context::endChange()
     changesDone.notify_all();
 }
 
-void Context::addAccel(std::uint64_t handle, std::weak_ptr<const Accel> accel)
+void Context::addTraversable(std::uint64_t handle, std::weak_ptr<const Traversable> traversable)
 {
-    const std::lock_guard lock(accelMutex);
-    accels[handle] = std::move(accel);
+    const std::lock_guard lock(traversableMutex);
+    traversableOwners[handle] = std::move(traversable);
 }
 
-void Context::removeAccel(std::uint64_t handle)
+void Context::removeTraversable(std::uint64_t handle)
 {
-    const std::lock_guard lock(accelMutex);
-    accels.erase(handle);
+    const std::lock_guard lock(traversableMutex);
+    traversableOwners.erase(handle);
 }
 
-std::shared_ptr<const Accel> Context::findAccel(std::uint64_t handle) const
+std::shared_ptr<const Traversable> Context::findTraversable(std::uint64_t handle) const
 {
-    const std::lock_guard lock(accelMutex);
-    const auto entry = accels.find(handle);
-    return entry == accels.end() ? nullptr : entry->second.lock();
+    const std::lock_guard lock(traversableMutex);
+    const auto entry = traversableOwners.find(handle);
+    return entry == traversableOwners.end() ? nullptr : entry->second.lock();
 }
 
 } // namespace oxrt
@@ -222,6 +223,7 @@ OxrtResult oxrtContextDestroy(OxrtContext context)
         for (const auto& pipeline : withdrawn.pipelines) pipeline->finishLaunch();
         removeTextures(withdrawn.context.get());
         for (const auto& accel : withdrawn.accels) accel->invalidate();
+        for (const auto& transform : withdrawn.transforms) transform->invalidate();
     });
 }
 

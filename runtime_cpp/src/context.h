@@ -19,7 +19,7 @@
 
 namespace oxrt {
 
-class Accel;
+class Traversable;
 
 class Context {
 public:
@@ -49,10 +49,10 @@ public:
     void beginChange(const char* action);
     void endChange();
 
-    void addAccel(std::uint64_t handle, std::weak_ptr<const Accel> accel);
-    void removeAccel(std::uint64_t handle);
-    // Null for a stale handle.
-    std::shared_ptr<const Accel> findAccel(std::uint64_t handle) const;
+    void addTraversable(std::uint64_t handle, std::weak_ptr<const Traversable> traversable);
+    void removeTraversable(std::uint64_t handle);
+    // Null for a stale handle and for those of instances.
+    std::shared_ptr<const Traversable> findTraversable(std::uint64_t handle) const;
 
     const EmbreeLibrary& embree;
     RTCDevice device = nullptr;
@@ -90,8 +90,8 @@ private:
     std::condition_variable changesDone;
     std::vector<Retired> retired;
 
-    mutable std::mutex accelMutex;
-    std::unordered_map<std::uint64_t, std::weak_ptr<const Accel>> accels;
+    mutable std::mutex traversableMutex;
+    std::unordered_map<std::uint64_t, std::weak_ptr<const Traversable>> traversableOwners;
 };
 
 // As many as the process may use: its CPU set and its cgroup's quota.

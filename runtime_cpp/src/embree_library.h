@@ -29,6 +29,7 @@ namespace oxrt {
     USE(rtcDisableGeometry)                                                                                                                \
     USE(rtcSetGeometryBuildQuality)                                                                                                        \
     USE(rtcSetGeometryMask)                                                                                                                \
+    USE(rtcSetGeometryTimeStepCount)                                                                                                       \
     USE(rtcSetGeometryUserData)                                                                                                            \
     USE(rtcSetSharedGeometryBuffer)                                                                                                        \
     USE(rtcUpdateGeometryBuffer)                                                                                                           \

@@ -39,8 +39,6 @@ void checkCounts(const OxrtBuildInput& input, unsigned number)
     if (input.primitiveIndexOffset + input.numPrimitives > std::uint64_t(1) << 32)
         fail(OXRT_ERROR_INVALID_VALUE, "input %u: primitiveIndexOffset %u plus %llu primitives does not fit 32 bits", number,
              input.primitiveIndexOffset, static_cast<unsigned long long>(input.numPrimitives));
-    if (input.numKeys > 1)
-        fail(OXRT_ERROR_NOT_SUPPORTED, "input %u: %u motion keys; this version builds static geometry only, give 1", number, input.numKeys);
 }
 
 // One array per motion key.
@@ -224,6 +222,7 @@ void Geometry::attach(const EmbreeLibrary& embree, RTCDevice device, RTCScene sc
     const RTCGeometry geometry = embree.rtcNewGeometry(device, custom ? RTC_GEOMETRY_TYPE_USER : RTC_GEOMETRY_TYPE_TRIANGLE);
     embree.rtcSetGeometryUserData(geometry, &target);
     embree.rtcSetGeometryMask(geometry, ~0u); // Embree's default is 1
+    embree.rtcSetGeometryTimeStepCount(geometry, view.keyCount);
     embree.rtcSetGeometryBuildQuality(geometry, updatable ? RTC_BUILD_QUALITY_REFIT : RTC_BUILD_QUALITY_MEDIUM);
     embree.rtcSetGeometryEnableFilterFunctionFromArguments(geometry, anyHitPossible());
     if (custom) {
@@ -232,7 +231,9 @@ void Geometry::attach(const EmbreeLibrary& embree, RTCDevice device, RTCScene sc
         embree.rtcSetGeometryIntersectFunction(geometry, intersectNothing);
         embree.rtcSetGeometryOccludedFunction(geometry, occludeNothing);
     } else {
-        embree.rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, vertices.data(), 0, 12, view.vertexCount);
+        for (std::uint32_t key = 0; key < view.keyCount; ++key)
+            embree.rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, key, RTC_FORMAT_FLOAT3, vertices.data(),
+                                              3 * sizeof(float) * view.vertexCount * key, 3 * sizeof(float), view.vertexCount);
         embree.rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, indices.data(), 0, 12, view.primitiveCount);
     }
     embree.rtcCommitGeometry(geometry);
@@ -246,7 +247,7 @@ void Geometry::refit(const EmbreeLibrary& embree, RTCScene scene, unsigned geomI
     const RTCGeometry geometry = embree.rtcGetGeometry(scene, geomID);
     embree.rtcSetGeometryEnableFilterFunctionFromArguments(geometry, anyHitPossible());
     if (view.primitiveType == OXRT_PRIMITIVE_TRIANGLE) {
-        embree.rtcUpdateGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0);
+        for (std::uint32_t key = 0; key < view.keyCount; ++key) embree.rtcUpdateGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, key);
         if (indicesChanged) embree.rtcUpdateGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0); // makes Embree build anew
     }
     embree.rtcCommitGeometry(geometry);

@@ -1,12 +1,14 @@
 // See instance.h.
 #include "instance.h"
 
-#include "accel.h"
 #include "context.h"
 #include "error.h"
+#include "matrix.h"
+#include "traversable.h"
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <unordered_map>
 
 namespace oxrt {
@@ -36,73 +38,66 @@ void checkInstance(const OxrtInstance& instance, std::size_t number)
              instance.visibilityMask);
 }
 
-// In double precision; false where no finite inverse exists.
-bool invert(const float (&matrix)[12], float (&inverse)[12])
-{
-    const auto m = [&matrix](int row, int column) { return static_cast<double>(matrix[4 * row + column]); };
-    double cofactors[9];
-    for (int row = 0; row < 3; ++row)
-        for (int column = 0; column < 3; ++column) {
-            const int r0 = (row + 1) % 3;
-            const int r1 = (row + 2) % 3;
-            const int c0 = (column + 1) % 3;
-            const int c1 = (column + 2) % 3;
-            cofactors[3 * row + column] = m(r0, c0) * m(r1, c1) - m(r0, c1) * m(r1, c0);
-        }
-    const double determinant = m(0, 0) * cofactors[0] + m(0, 1) * cofactors[1] + m(0, 2) * cofactors[2];
-    bool finite = determinant != 0;
-    for (int row = 0; row < 3; ++row) {
-        double translation = 0;
-        for (int column = 0; column < 3; ++column) {
-            const double element = cofactors[3 * column + row] / determinant;
-            inverse[4 * row + column] = static_cast<float>(element);
-            translation -= element * m(column, 3);
-        }
-        inverse[4 * row + 3] = static_cast<float>(translation);
-        for (int column = 0; column < 4; ++column) finite = finite && std::isfinite(inverse[4 * row + column]);
-    }
-    if (!finite) std::fill(std::begin(inverse), std::end(inverse), 0.0f);
-    return finite;
-}
-
 } // namespace
 
-Instances::Instances(const Context& context, std::span<const OxrtInstance> instances)
+Instances::Instances(const Context& context, std::span<const OxrtInstance> instances, const OxrtMotionOptions& motionOptions)
+    : motion(motionOptions)
 {
     if (instances.size() > maxInstances)
         fail(OXRT_ERROR_INVALID_VALUE, "%llu instances; an IAS holds at most 2^28", printable(instances.size()));
     for (std::size_t i = 0; i < instances.size(); ++i) checkInstance(instances[i], i);
 
     views = Array<OxrtInstanceView>(instances.size());
-    traversables = Array<OxrtTraversableView>(instances.size());
+    ownTraversables = Array<OxrtTraversableView>(instances.size());
+    childNumbers = Array<std::uint32_t>(instances.size());
     usable = Array<std::uint8_t>(instances.size());
 
     // Most scenes have many instances of few children.
-    std::unordered_map<std::uint64_t, const Accel*> known;
+    std::unordered_map<std::uint64_t, std::uint32_t> known;
     for (std::size_t i = 0; i < instances.size(); ++i) {
         const std::uint64_t handle = instances[i].traversable;
         if (handle != 0) { // a null child is allowed and never hit
-            auto [entry, isNew] = known.try_emplace(handle, nullptr);
-            if (isNew) entry->second = &child(context, handle, i);
-            views[i].child = &entry->second->traversable();
+            auto [entry, isNew] = known.try_emplace(handle, 0);
+            if (isNew) entry->second = addChild(context, handle, i);
+            childNumbers[i] = entry->second;
+            views[i].child = &children[entry->second].traversable->traversable();
         }
         describe(instances[i], views[i]);
     }
+    gatherNeeds();
+    if (graphDepth() >= maxGraphDepth)
+        fail(OXRT_ERROR_INVALID_VALUE, "the graph would be %u traversables deep; the limit is %u", graphDepth() + 1, maxGraphDepth);
 }
 
-const Accel& Instances::child(const Context& context, std::uint64_t handle, std::size_t number)
+std::uint32_t Instances::addChild(const Context& context, std::uint64_t handle, std::size_t number)
 {
-    std::shared_ptr<const Accel> accel = context.findAccel(handle);
-    if (!accel)
+    std::shared_ptr<const Traversable> traversable = context.findTraversable(handle);
+    if (!traversable)
         fail(OXRT_ERROR_INVALID_VALUE,
-             "instance %llu: traversable 0x%llx is not alive in this context (destroyed, never built, or of another context)",
+             "instance %llu: traversable 0x%llx is not alive in this context (destroyed, never built, an instance's handle, or of another "
+             "context)",
              printable(number), static_cast<unsigned long long>(handle));
-    if (accel->traversable().type != OXRT_TRAVERSABLE_GAS)
-        fail(OXRT_ERROR_NOT_SUPPORTED, "instance %llu: its traversable is an IAS; this version instances geometry (GAS) only",
-             printable(number));
-    sceneNeeds |= accel->traversable().needs;
-    children.push_back(std::move(accel));
-    return *children.back();
+    children.push_back({std::move(traversable), {}});
+    return static_cast<std::uint32_t>(children.size() - 1);
+}
+
+unsigned Instances::graphDepth() const
+{
+    unsigned deepest = 0;
+    for (const Child& child : children) deepest = std::max(deepest, child.traversable->graphDepth());
+    return deepest;
+}
+
+// Embree's own instances know one level, no vanishing, and one time for everything below.
+void Instances::gatherNeeds()
+{
+    native = motion.numKeys < 2 || motion.flags == 0;
+    for (const Child& child : children) {
+        const OxrtTraversableView& view = child.traversable->traversable();
+        sceneNeeds |= view.needs;
+        native = native && view.type == OXRT_TRAVERSABLE_GAS && view.keyCount < 2;
+    }
+    if (!native) sceneNeeds |= OXRT_SCENE_MULTI_LEVEL;
 }
 
 void Instances::describe(const OxrtInstance& instance, OxrtInstanceView& view)
@@ -114,13 +109,21 @@ void Instances::describe(const OxrtInstance& instance, OxrtInstanceView& view)
     view.visibilityMask = instance.visibilityMask;
     view.flags = instance.flags;
     const bool invertible = invert(view.objectToWorld, view.worldToObject);
-    usable[number] = invertible && view.child;
+    usable[number] = invertible && view.child && view.child->scene;
     singular += !invertible;
     if (instance.flags != 0) sceneNeeds |= OXRT_SCENE_HAS_INSTANCE_FLAGS;
     if (instance.visibilityMask != fullMask) sceneNeeds |= OXRT_SCENE_HAS_MASKS;
 }
 
-void Instances::attach(const EmbreeLibrary& embree, RTCDevice device, RTCScene scene, bool updatable) const
+void Instances::attach(const EmbreeLibrary& embree, RTCDevice device, RTCScene scene, bool updatable)
+{
+    if (native)
+        attachNative(embree, device, scene, updatable);
+    else if (size() != 0)
+        attachOwn(embree, device, scene, updatable);
+}
+
+void Instances::attachNative(const EmbreeLibrary& embree, RTCDevice device, RTCScene scene, bool updatable) const
 {
     for (std::uint32_t i = 0; i < size(); ++i) {
         if (!views[i].child || !views[i].child->scene) continue; // the number stays reserved
@@ -136,6 +139,55 @@ void Instances::attach(const EmbreeLibrary& embree, RTCDevice device, RTCScene s
     }
 }
 
+// More keys than Embree takes only make the boxes of each step hold for longer.
+unsigned Instances::timeSteps() const
+{
+    return std::min<unsigned>(motion.numKeys, RTC_MAX_TIME_STEP_COUNT);
+}
+
+// Boxes at time steps are blended between them, so each holds for the intervals on both sides; the first and last also for all time before
+// and after, since the range of a structure does not stop what is below.
+void Instances::boundChildren()
+{
+    constexpr float infinity = std::numeric_limits<float>::infinity();
+    const unsigned steps = timeSteps();
+    const auto timeOf = [&](unsigned step) {
+        return motion.timeBegin + (motion.timeEnd - motion.timeBegin) * static_cast<float>(step) / static_cast<float>(steps - 1);
+    };
+    for (Child& child : children) {
+        child.bounds.clear();
+        for (unsigned step = 0; step < steps; ++step)
+            child.bounds.push_back(
+                child.traversable->boundsDuring(step == 0 ? -infinity : timeOf(step - 1), step + 1 == steps ? infinity : timeOf(step + 1)));
+    }
+}
+
+void Instances::boundInstance(const RTCBoundsFunctionArguments* arguments)
+{
+    const auto& self = *static_cast<const Instances*>(arguments->geometryUserPtr);
+    const std::uint32_t number = arguments->primID;
+    *arguments->bounds_o = self.usable[number] ? imageOf(self.views[number].objectToWorld,
+                                                         self.children[self.childNumbers[number]].bounds[arguments->timeStep])
+                                               : emptyBounds();
+}
+
+void Instances::attachOwn(const EmbreeLibrary& embree, RTCDevice device, RTCScene scene, bool updatable)
+{
+    boundChildren();
+    const RTCGeometry geometry = embree.rtcNewGeometry(device, RTC_GEOMETRY_TYPE_USER);
+    embree.rtcSetGeometryUserPrimitiveCount(geometry, size());
+    embree.rtcSetGeometryTimeStepCount(geometry, timeSteps());
+    embree.rtcSetGeometryUserData(geometry, this);
+    embree.rtcSetGeometryMask(geometry, ~0u); // kernels look at the mask of each instance
+    embree.rtcSetGeometryBuildQuality(geometry, updatable ? RTC_BUILD_QUALITY_REFIT : RTC_BUILD_QUALITY_MEDIUM);
+    embree.rtcSetGeometryBoundsFunction(geometry, boundInstance, this);
+    embree.rtcSetGeometryIntersectFunction(geometry, [](const RTCIntersectFunctionNArguments*) {}); // kernels bring their own
+    embree.rtcSetGeometryOccludedFunction(geometry, [](const RTCOccludedFunctionNArguments*) {});
+    embree.rtcCommitGeometry(geometry);
+    embree.rtcAttachGeometryByID(scene, geometry, 0);
+    embree.rtcReleaseGeometry(geometry);
+}
+
 void Instances::update(std::span<const OxrtInstance> instances)
 {
     for (std::size_t i = 0; i < instances.size(); ++i) {
@@ -147,13 +199,17 @@ void Instances::update(std::span<const OxrtInstance> instances)
     }
     sceneNeeds = 0;
     singular = 0;
-    for (const auto& accel : children) sceneNeeds |= accel->traversable().needs;
     for (std::size_t i = 0; i < instances.size(); ++i) describe(instances[i], views[i]);
+    gatherNeeds();
 }
 
-void Instances::refit(const EmbreeLibrary& embree, RTCScene scene) const
+void Instances::refit(const EmbreeLibrary& embree, RTCScene scene)
 {
-    for (std::uint32_t i = 0; i < size(); ++i) {
+    if (!native && size() != 0) {
+        boundChildren();
+        embree.rtcCommitGeometry(embree.rtcGetGeometry(scene, 0));
+    }
+    for (std::uint32_t i = 0; native && i < size(); ++i) {
         if (!views[i].child || !views[i].child->scene) continue;
         const RTCGeometry geometry = embree.rtcGetGeometry(scene, i);
         embree.rtcSetGeometryTransform(geometry, 0, RTC_FORMAT_FLOAT3X4_ROW_MAJOR, views[i].objectToWorld);
@@ -169,7 +225,7 @@ void Instances::refit(const EmbreeLibrary& embree, RTCScene scene) const
 void Instances::addHandles(Context& context)
 {
     for (std::uint32_t i = 0; i < size(); ++i) {
-        OxrtTraversableView& view = traversables[i];
+        OxrtTraversableView& view = ownTraversables[i];
         view.type = OXRT_TRAVERSABLE_INSTANCE;
         view.instances = &views[i];
         view.instanceCount = 1;
@@ -181,12 +237,12 @@ void Instances::addHandles(Context& context)
 
 void Instances::removeHandles(Context& context)
 {
-    for (std::uint32_t i = 0; i < size(); ++i) context.traversables.remove(traversables[i].handle);
+    for (std::uint32_t i = 0; i < size(); ++i) context.traversables.remove(ownTraversables[i].handle);
 }
 
 std::size_t Instances::bytes() const
 {
-    return views.bytes() + traversables.bytes() + usable.bytes();
+    return views.bytes() + ownTraversables.bytes() + childNumbers.bytes() + usable.bytes();
 }
 
 } // namespace oxrt

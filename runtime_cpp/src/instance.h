@@ -1,5 +1,6 @@
-// The instances of an instance acceleration structure: checked, resolved to their children, inverted, and given to Embree as native
-// instances (one level).
+// The instances of an instance acceleration structure: checked, resolved to their children, inverted, and given to Embree. Above static
+// geometry they are Embree's own instances (one level); above anything else one user geometry with a primitive for each instance, which
+// kernels walk through themselves.
 #pragma once
 
 #include "array.h"
@@ -14,38 +15,55 @@
 
 namespace oxrt {
 
-class Accel;
+class Traversable;
 class Context;
 
 class Instances {
 public:
     // Throws Failure for instances that cannot be built. Keeps the children alive.
-    Instances(const Context& context, std::span<const OxrtInstance> instances);
+    Instances(const Context& context, std::span<const OxrtInstance> instances, const OxrtMotionOptions& motion);
 
-    void attach(const EmbreeLibrary& embree, RTCDevice device, RTCScene scene, bool updatable) const;
+    void attach(const EmbreeLibrary& embree, RTCDevice device, RTCScene scene, bool updatable);
 
     // Other transforms, ids, offsets, masks and flags of the same children.
     void update(std::span<const OxrtInstance> instances);
-    void refit(const EmbreeLibrary& embree, RTCScene scene) const;
+    void refit(const EmbreeLibrary& embree, RTCScene scene);
 
     // Gives each instance its handle, and takes them back.
     void addHandles(Context& context);
     void removeHandles(Context& context);
 
     const OxrtInstanceView* data() const { return views.data(); }
+    const OxrtTraversableView* traversables() const { return ownTraversables.data(); }
     std::uint32_t size() const { return static_cast<std::uint32_t>(views.size()); }
     std::uint32_t needs() const { return sceneNeeds; }
+    bool isNative() const { return native; }
+    unsigned graphDepth() const; // of the deepest child
     std::size_t singularCount() const { return singular; }
     std::size_t bytes() const;
 
 private:
-    const Accel& child(const Context& context, std::uint64_t handle, std::size_t number);
+    struct Child {
+        std::shared_ptr<const Traversable> traversable;
+        std::vector<RTCBounds> bounds; // one for each time step of the user geometry
+    };
+
+    std::uint32_t addChild(const Context& context, std::uint64_t handle, std::size_t number);
     void describe(const OxrtInstance& instance, OxrtInstanceView& view);
+    void gatherNeeds();
+    void boundChildren();
+    static void boundInstance(const RTCBoundsFunctionArguments* arguments);
+    void attachNative(const EmbreeLibrary& embree, RTCDevice device, RTCScene scene, bool updatable) const;
+    void attachOwn(const EmbreeLibrary& embree, RTCDevice device, RTCScene scene, bool updatable);
+    unsigned timeSteps() const;
 
     Array<OxrtInstanceView> views;
-    Array<OxrtTraversableView> traversables; // what an instance's handle leads to
-    Array<std::uint8_t> usable;              // 0: no child, or a transform that nothing survives
-    std::vector<std::shared_ptr<const Accel>> children;
+    Array<OxrtTraversableView> ownTraversables; // what an instance's handle leads to
+    Array<std::uint32_t> childNumbers;          // of each instance
+    Array<std::uint8_t> usable;                 // 0: no child, or a transform that nothing survives
+    std::vector<Child> children;
+    const OxrtMotionOptions motion;
+    bool native = true;
     std::uint32_t sceneNeeds = 0;
     std::size_t singular = 0;
 };

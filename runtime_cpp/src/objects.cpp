@@ -4,6 +4,7 @@
 #include "accel.h"
 #include "context.h"
 #include "pipeline.h"
+#include "transform.h"
 
 #include <atomic>
 #include <mutex>
@@ -21,6 +22,7 @@ struct Objects {
     std::mutex mutex;
     Table<Context> contexts;
     Table<Accel> accels;
+    Table<Transform> transforms;
     Table<Pipeline> pipelines;
     std::atomic<unsigned> forks{0};
 };
@@ -116,6 +118,11 @@ OxrtAccel publish(std::shared_ptr<Accel> accel)
     return asHandle<OxrtAccel>(insert(&Objects::accels, std::move(accel)));
 }
 
+OxrtTransform publish(std::shared_ptr<Transform> transform)
+{
+    return asHandle<OxrtTransform>(insert(&Objects::transforms, std::move(transform)));
+}
+
 OxrtPipeline publish(std::shared_ptr<Pipeline> pipeline)
 {
     return asHandle<OxrtPipeline>(insert(&Objects::pipelines, std::move(pipeline)));
@@ -135,6 +142,13 @@ std::shared_ptr<Accel> find(OxrtAccel handle)
     return accel;
 }
 
+std::shared_ptr<Transform> find(OxrtTransform handle)
+{
+    auto transform = lookUp(&Objects::transforms, handle, OXRT_ERROR_INVALID_VALUE, "transform");
+    transform->context->checkProcess();
+    return transform;
+}
+
 std::shared_ptr<Pipeline> find(OxrtPipeline handle)
 {
     auto pipeline = lookUp(&Objects::pipelines, handle, OXRT_ERROR_INVALID_VALUE, "pipeline");
@@ -146,6 +160,12 @@ std::shared_ptr<Accel> withdraw(OxrtAccel handle)
 {
     find(handle);
     return erase(&Objects::accels, handle, OXRT_ERROR_INVALID_VALUE, "accel");
+}
+
+std::shared_ptr<Transform> withdraw(OxrtTransform handle)
+{
+    find(handle);
+    return erase(&Objects::transforms, handle, OXRT_ERROR_INVALID_VALUE, "transform");
 }
 
 std::shared_ptr<Pipeline> withdraw(OxrtPipeline handle)
@@ -161,6 +181,7 @@ ContextObjects withdraw(OxrtContext handle)
     withdrawn.context = erase(&Objects::contexts, handle, OXRT_ERROR_INVALID_DEVICE_CONTEXT, "context");
     const std::lock_guard lock(objects().mutex);
     withdrawn.accels = eraseOf(objects().accels, withdrawn.context.get());
+    withdrawn.transforms = eraseOf(objects().transforms, withdrawn.context.get());
     withdrawn.pipelines = eraseOf(objects().pipelines, withdrawn.context.get());
     return withdrawn;
 }

@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 from harness import Harness
 from oracle_files import Probe, number, numbers
+from oracle_instances import instance_names
 from oracle_scene import handle_of
 from shaders import recorder as layout
 
@@ -54,7 +55,7 @@ def record(harness: Harness, probe: Probe, scene: dict[str, Any]) -> list[RayRes
     counts = np.zeros(count, np.uint32)
     params = layout.Params(rays=rays, outcomes=outcomes, counts=counts, words=words, numbers=values, handles=handles)
     harness.launch(pipeline, params, sbt, count)
-    names = {handle_of(traversable): name for name, traversable in scene.items()}
+    names = {handle_of(traversable): name for name, traversable in scene.items()} | instance_names(harness, probe.scene, scene)
     return [RayResult([int(outcomes[ray][f"word{i}"]) for i in range(4)], int(outcomes[ray]["returned"]), int(counts[ray]),
                       [_event(words[ray, i], values[ray, i], handles[ray, i]["value"], names) for i in range(min(int(counts[ray]), room))])
             for ray in range(count)]

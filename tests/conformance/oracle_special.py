@@ -15,6 +15,7 @@ from oracle_callables import check_callables
 from oracle_exceptions import check_exceptions, check_refused_code
 from oracle_files import Probe
 from oracle_hit_objects import USING_TRAVERSE_DATA, check_hit_objects, mode_of
+from oracle_instance_queries import check_instance_queries
 from oracle_payload import check_payload32
 from oracle_queries import check_triangle_queries, is_triangle_query, moves
 
@@ -40,6 +41,8 @@ def check_of(probe: Probe) -> Check | None:
         return Check(("exceptions",), check_refused_code)
     if probe.group.startswith("10_callables") and "log" in probe.data:
         return Check(("callables",), check_callables)
+    if probe.name == "instance_random_access":
+        return Check(("random instance access", "static transforms", "several instance levels"), check_instance_queries)
     if probe.data.get("queries") and is_triangle_query(probe):
         return Check(("random vertex access", *(("vertex motion",) if moves(probe) else ())), check_triangle_queries)
     if "rcName" in probe.data and has_check(probe):

@@ -42,9 +42,7 @@ class Accel:
         options = library.ffi().new("OxrtAccelBuildOptions*")
         options.buildFlags = int(build_flags)
         if motion_options is not None:
-            options.motion.numKeys = motion_options.num_keys
-            options.motion.flags = int(motion_options.flags)
-            options.motion.timeBegin, options.motion.timeEnd = motion_options.time_begin, motion_options.time_end
+            motion_options.fill(options.motion)
         packed = pack_inputs(inputs)
         made = library.ffi().new("OxrtAccel*")
         library.check(library.lib().oxrtAccelBuild(context.handle, options, packed.array, packed.count, made))
@@ -72,6 +70,11 @@ class Accel:
     def primitive_count(self) -> int:
         """Primitives of a GAS, instances of an IAS."""
         return int(self._info().primitiveCount)
+
+    @property
+    def has_native_instances(self) -> bool:
+        """Whether Embree walks through this IAS by itself: one level over static structures. Other graphs are walked through by kernels."""
+        return bool(self._info().hasNativeInstances)
 
     def update(self, inputs: Sequence[BuildInput]) -> Accel:
         """Refits to the same inputs with other coordinates; needs ALLOW_UPDATE. The handle stays."""

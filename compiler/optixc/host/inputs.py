@@ -16,6 +16,7 @@ from optixc.errors import InvalidValueError
 from optixc.host import library
 
 Keys = Any
+_KEY_LIMIT = 1 << 16
 _IDENTITY = (1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0)
 
 
@@ -26,7 +27,15 @@ class MotionOptions:
     num_keys: int = 1
     time_begin: float = 0.0
     time_end: float = 1.0
-    flags: MotionFlags = MotionFlags.NONE
+    flags: MotionFlags | int = MotionFlags.NONE
+
+    def fill(self, target: Any) -> None:
+        """Writes the options into an OxrtMotionOptions."""
+        if not isinstance(self.num_keys, int | np.integer) or not 0 <= self.num_keys < _KEY_LIMIT:
+            raise InvalidValueError(f"MotionOptions.num_keys must be 0 to {_KEY_LIMIT - 1}, not {self.num_keys!r}")
+        target.numKeys = int(self.num_keys)
+        target.flags = int(self.flags)
+        target.timeBegin, target.timeEnd = float(self.time_begin), float(self.time_end)
 
 
 @dataclass(frozen=True)

@@ -129,4 +129,30 @@ _INSTANCES: tuple[Intrinsic, ...] = (
     ),
 )
 
-ROWS: tuple[Intrinsic, ...] = (*_SURFACE, *_vertex_rows(), *_WITH_ARGUMENTS, *_HANDLES, *_INSTANCES)
+# Where OptiX gives a pointer to a struct, these give its members; of motion transforms one key.
+_MOTION_MEMBERS = (t.TRAVERSABLE, t.UINT32, t.UINT32, t.FLOAT32, t.FLOAT32)
+_TRANSFORMS: tuple[Intrinsic, ...] = (
+    device(
+        "optixGetStaticTransformFromHandle",
+        (("handle", t.TRAVERSABLE),),
+        t.Tuple((t.TRAVERSABLE, MATRIX, MATRIX)),
+        "Child, matrix and inverse of a static transform; zeros for other handles.",
+        state=State.THREAD,
+    ),
+    device(
+        "optixGetMatrixMotionTransformFromHandle",
+        (("handle", t.TRAVERSABLE), ("key", t.UINT32)),
+        t.Tuple((*_MOTION_MEMBERS, MATRIX)),
+        "Child, number of keys, flags, begin, end and one key of a matrix-motion transform; zeros for other handles.",
+        state=State.THREAD,
+    ),
+    device(
+        "optixGetSRTMotionTransformFromHandle",
+        (("handle", t.TRAVERSABLE), ("key", t.UINT32)),
+        t.Tuple((*_MOTION_MEMBERS, t.Matrix(4, 4))),
+        "Child, number of keys, flags, begin, end and the 16 numbers of one key of an SRT-motion transform; zeros for other handles.",
+        state=State.THREAD,
+    ),
+)
+
+ROWS: tuple[Intrinsic, ...] = (*_SURFACE, *_vertex_rows(), *_WITH_ARGUMENTS, *_HANDLES, *_INSTANCES, *_TRANSFORMS)

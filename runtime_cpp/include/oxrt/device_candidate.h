@@ -42,7 +42,18 @@ OXRT_INLINE const OxrtTraversableView* findTraversable(const OxrtLaunch& launch,
 
 /* Enter which primitive the hit is on. */
 OXRT_INLINE void locate(Ray& ray, uint32_t instance, const OxrtGeometry* geometry, uint32_t primitive) {
-    ray.instance = instance == RTC_INVALID_GEOMETRY_ID ? nullptr : ray.root->instances + instance;
+/* Whether kernels walk through the scene themselves. */
+OXRT_INLINE bool isGraph(const OxrtTraversableView& view) { return view.needs & (OXRT_SCENE_MULTI_LEVEL | OXRT_SCENE_HAS_MOTION); }
+
+inline __attribute__((noinline)) const OxrtInstanceView* findInstanceOnPath(GraphPath& path, uint32_t instance) {
+    path.native = instance == RTC_INVALID_GEOMETRY_ID ? nullptr : path.structure->instances + instance;
+    return path.native ? path.native : path.instance;
+}
+
+    if (__builtin_expect(ray.path != nullptr, 0))
+        ray.instance = findInstanceOnPath(*ray.path, instance);
+    else
+        ray.instance = instance == RTC_INVALID_GEOMETRY_ID ? nullptr : ray.root->instances + instance;
     ray.geometry = geometry;
     ray.primitive = primitive;
 }
@@ -50,7 +61,7 @@ OXRT_INLINE void locate(Ray& ray, uint32_t instance, const OxrtGeometry* geometr
 OXRT_INLINE void enterHit(Ray& ray, const RTCHit& hit, float t, const void* geometry = nullptr) {
     locate(ray, hit.instID[0], static_cast<const OxrtGeometry*>(geometry), hit.primID);
     if (!geometry)
-        ray.geometry = (ray.instance ? ray.instance->child : ray.root)->geometries + hit.geomID;
+        ray.geometry = holderOf(ray).geometries + hit.geomID;
     ray.t = t;
     ray.u = hit.u;
     ray.v = hit.v;
@@ -60,8 +71,7 @@ OXRT_INLINE void enterHit(Ray& ray, const RTCHit& hit, float t, const void* geom
 /* The hit's SBT record, null if there is none that this pipeline may run. */
 OXRT_INLINE const OxrtRecordHeader* findHitRecord(Ray& ray) {
     const OxrtLaunch& launch = *ray.thread->launch;
-    const uint32_t instanceOffset = ray.instance ? ray.instance->sbtOffset : 0;
-    ray.recordIndex = instanceOffset + getSbtGASIndex(ray) * ray.sbtStride + ray.sbtOffset;
+    ray.recordIndex = instanceSbtOffset(ray) + getSbtGASIndex(ray) * ray.sbtStride + ray.sbtOffset;
     ray.record = findRecord(launch, launch.hitgroupRecords, launch.hitgroupStride, launch.hitgroupCount, ray.recordIndex);
     return ray.record;
 }

@@ -15,6 +15,7 @@ struct HitObject {
     enum class Kind : uint32_t { Nop, Hit, Miss } kind = Kind::Nop;
     uint32_t recordIndex = 0;
     Ray ray;
+    GraphPath path;
 };
 
 OXRT_INLINE bool hitObjectIsHit(const HitObject& object) { return object.kind == HitObject::Kind::Hit; }
@@ -34,7 +35,7 @@ OXRT_INLINE void traverse(OxrtThread& thread, HitObject& object, uint64_t handle
     setRay<Programs>(ray, thread, handle, origin, direction, tmin, tmax, time, mask, flags, sbtOffset, sbtStride, missIndex, payload, place);
     object.kind = HitObject::Kind::Miss;
     object.recordIndex = missIndex;
-    if (canHit(ray) && traverseClosest<Programs, Flags>(ray)) {
+    if (canHit(ray) && findClosest<Programs, Flags>(ray, object.path)) {
         findHitRecord(ray);
         object.kind = HitObject::Kind::Hit;
         object.recordIndex = ray.recordIndex;
@@ -49,6 +50,11 @@ template <class Programs> OXRT_INLINE void invoke(OxrtThread& thread, HitObject&
         return;
     Ray ray = object.ray;
     ray.payload = &payload;
+    GraphPath path; /* the program may fill the hit object anew */
+    if (ray.path) {
+        copyPath(path, *ray.path);
+        ray.path = &path;
+    }
     const OxrtLaunch& launch = *thread.launch;
     if (kind == HitObject::Kind::Miss) {
         ray.missIndex = object.recordIndex;
@@ -74,6 +80,7 @@ OXRT_INLINE void makeMissHitObject(HitObject& object, uint32_t missIndex, const 
     ray.flags = flags & 0xFFFF;
     ray.missIndex = missIndex;
     ray.instance = nullptr;
+    ray.path = nullptr;
     object.kind = HitObject::Kind::Miss;
     object.recordIndex = missIndex;
 }

@@ -2,7 +2,7 @@
 #ifndef OXRT_DEVICE_RAY_H
 #define OXRT_DEVICE_RAY_H
 
-#include <oxrt/device_thread.h>
+#include <oxrt/device_motion.h>
 #include <oxrt/embree.h>
 
 namespace oxrt {
@@ -26,6 +26,9 @@ enum InstanceFlag : uint32_t { INSTANCE_DISABLE_FACE_CULLING = 1, INSTANCE_FLIP_
 enum HitKind : uint32_t { HIT_KIND_TRIANGLE_FRONT_FACE = 0xFE, HIT_KIND_TRIANGLE_BACK_FACE = 0xFF };
 enum RecordSlot { SLOT_CLOSESTHIT = 0, SLOT_ANYHIT = 1, SLOT_INTERSECTION = 2 };
 
+/* Stands for the kind of a reported hit while there is none: kinds have 8 bits. */
+inline constexpr uint32_t NO_REPORT = ~0u;
+
 /* What became of a candidate. */
 enum class Verdict : uint32_t { Accept, Ignore, Terminate };
 
@@ -36,6 +39,7 @@ struct Ray {
     OxrtThread* thread;
     void* payload;
     const OxrtTraversableView* root;
+    GraphPath* path; /* the way to the hit in scenes that kernels walk through themselves (device_graph.h), else null */
     float3 origin, direction;
     float tmin, tmax, time;
     uint32_t mask, flags, sbtOffset, sbtStride, missIndex;
@@ -45,7 +49,7 @@ struct Ray {
     float u, v;
     float3 normal; /* of a triangle: object space, not normalised */
     uint32_t primitive; /* within its geometry */
-    const OxrtInstanceView* instance; /* null for a GAS traced directly */
+    const OxrtInstanceView* instance; /* the innermost; null for a GAS that hangs in none */
     const OxrtGeometry* geometry;
     const OxrtRecordHeader* record;
     uint32_t recordIndex;
@@ -120,63 +124,79 @@ OXRT_INLINE uint32_t getPrimitiveIndex(const Ray& ray) { return ray.primitive + 
 OXRT_INLINE uint32_t localRecord(const Ray& ray) { return ray.geometry->recordOffsets ? ray.geometry->recordOffsets[ray.primitive] : 0; }
 OXRT_INLINE uint32_t getSbtGASIndex(const Ray& ray) { return ray.geometry->recordBase + localRecord(ray); }
 OXRT_INLINE uint32_t getInstanceId(const Ray& ray) { return ray.instance ? ray.instance->instanceId : ~0u; }
-OXRT_INLINE uint32_t getInstanceIndex(const Ray& ray) { return ray.instance ? uint32_t(ray.instance - ray.root->instances) : 0; }
-OXRT_INLINE uint64_t getGASTraversableHandle(const Ray& ray) { return ray.instance ? ray.instance->child->handle : ray.root->handle; }
+OXRT_INLINE uint32_t getInstanceIndex(const Ray& ray) {
+    if (__builtin_expect(ray.path != nullptr, 0))
+        return ray.path->native ? uint32_t(ray.instance - ray.path->structure->instances) : ray.path->instanceIndex;
+    return ray.instance ? uint32_t(ray.instance - ray.root->instances) : 0;
+}
+/* The GAS that holds the primitive. */
+OXRT_INLINE const OxrtTraversableView& holderOf(const Ray& ray) {
+    if (__builtin_expect(ray.path != nullptr, 0))
+        return structureOf(*ray.path);
+    return ray.instance ? *ray.instance->child : *ray.root;
+}
+OXRT_INLINE uint64_t getGASTraversableHandle(const Ray& ray) { return holderOf(ray).handle; }
+/* Of all instances above the primitive. */
+OXRT_INLINE uint32_t instanceSbtOffset(const Ray& ray) {
+    if (__builtin_expect(ray.path != nullptr, 0))
+        return ray.path->sbtOffset + (ray.path->native ? ray.path->native->sbtOffset : 0);
+    return ray.instance ? ray.instance->sbtOffset : 0;
+}
 OXRT_INLINE constexpr uint32_t getClusterId(const Ray&) { return ~0u; }
 
 /* ---- transforms ----------------------------------------------------------------------------------------------------------------- */
 
-OXRT_INLINE uint32_t getTransformListSize(const Ray& ray) { return ray.instance ? 1 : 0; }
-OXRT_INLINE uint64_t getTransformListHandle(const Ray& ray, uint32_t index) { return ray.instance && index == 0 ? ray.instance->handle : 0; }
-
-OXRT_INLINE float3 transformPoint(const float* m, const float3& p) {
-    return {m[0] * p.x + m[1] * p.y + m[2] * p.z + m[3], m[4] * p.x + m[5] * p.y + m[6] * p.z + m[7],
-            m[8] * p.x + m[9] * p.y + m[10] * p.z + m[11]};
+OXRT_INLINE uint32_t getTransformListSize(const Ray& ray) {
+    if (__builtin_expect(ray.path != nullptr, 0))
+        return pathLength(*ray.path);
+    return ray.instance ? 1 : 0;
 }
-OXRT_INLINE float3 transformVector(const float* m, const float3& v) {
-    return {m[0] * v.x + m[1] * v.y + m[2] * v.z, m[4] * v.x + m[5] * v.y + m[6] * v.z, m[8] * v.x + m[9] * v.y + m[10] * v.z};
-}
-/* `inverse` is the matrix of the opposite direction. */
-OXRT_INLINE float3 transformNormal(const float* inverse, const float3& n) {
-    const float* m = inverse;
-    return {m[0] * n.x + m[4] * n.y + m[8] * n.z, m[1] * n.x + m[5] * n.y + m[9] * n.z, m[2] * n.x + m[6] * n.y + m[10] * n.z};
+OXRT_INLINE uint64_t getTransformListHandle(const Ray& ray, uint32_t index) {
+    if (__builtin_expect(ray.path != nullptr, 0))
+        return pathHandle(*ray.path, index);
+    return ray.instance && index == 0 ? ray.instance->handle : 0;
 }
 
-OXRT_INLINE float3 transformPointFromObjectToWorldSpace(const Ray& ray, const float3& p) {
-    return ray.instance ? transformPoint(ray.instance->objectToWorld, p) : p;
+#define OXRT_TRANSFORM(NAME, TRANSFORM, MATRIX, ALONG)                                  \
+    OXRT_INLINE float3 transform##NAME(const Ray& ray, const float3& value) {            \
+        if (__builtin_expect(ray.path != nullptr, 0))                                    \
+            return throughPath(ray, value, ALONG, TRANSFORM);                            \
+        return ray.instance ? TRANSFORM(ray.instance->MATRIX, value) : value;            \
+    }
+template <class Along, class Transform> OXRT_INLINE float3 throughPath(const Ray& ray, const float3& value, Along along, Transform transform) {
+    return pathLength(*ray.path) == 0 ? value : transform(along(*ray.path, ray.time).m, value);
 }
-OXRT_INLINE float3 transformPointFromWorldToObjectSpace(const Ray& ray, const float3& p) {
-    return ray.instance ? transformPoint(ray.instance->worldToObject, p) : p;
-}
-OXRT_INLINE float3 transformVectorFromObjectToWorldSpace(const Ray& ray, const float3& v) {
-    return ray.instance ? transformVector(ray.instance->objectToWorld, v) : v;
-}
-OXRT_INLINE float3 transformVectorFromWorldToObjectSpace(const Ray& ray, const float3& v) {
-    return ray.instance ? transformVector(ray.instance->worldToObject, v) : v;
-}
-OXRT_INLINE float3 transformNormalFromObjectToWorldSpace(const Ray& ray, const float3& n) {
-    return ray.instance ? transformNormal(ray.instance->worldToObject, n) : n;
-}
-OXRT_INLINE float3 transformNormalFromWorldToObjectSpace(const Ray& ray, const float3& n) {
-    return ray.instance ? transformNormal(ray.instance->objectToWorld, n) : n;
-}
+OXRT_TRANSFORM(PointFromObjectToWorldSpace, transformPoint, objectToWorld, objectToWorldAlong)
+OXRT_TRANSFORM(PointFromWorldToObjectSpace, transformPoint, worldToObject, worldToObjectAlong)
+OXRT_TRANSFORM(VectorFromObjectToWorldSpace, transformVector, objectToWorld, objectToWorldAlong)
+OXRT_TRANSFORM(VectorFromWorldToObjectSpace, transformVector, worldToObject, worldToObjectAlong)
+OXRT_TRANSFORM(NormalFromObjectToWorldSpace, transformNormal, worldToObject, worldToObjectAlong)
+OXRT_TRANSFORM(NormalFromWorldToObjectSpace, transformNormal, objectToWorld, objectToWorldAlong)
+#undef OXRT_TRANSFORM
 
-OXRT_INLINE float3x4 matrixFrom(const float* m) {
-    return {{{m[0], m[1], m[2], m[3]}, {m[4], m[5], m[6], m[7]}, {m[8], m[9], m[10], m[11]}}};
-}
-OXRT_INLINE float3x4 identityTransform() { return {{{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}}}; }
 OXRT_INLINE float3x4 getObjectToWorldTransformMatrix(const Ray& ray) {
+    if (__builtin_expect(ray.path != nullptr, 0))
+        return matrixFrom(objectToWorldAlong(*ray.path, ray.time).m);
     return ray.instance ? matrixFrom(ray.instance->objectToWorld) : identityTransform();
 }
 OXRT_INLINE float3x4 getWorldToObjectTransformMatrix(const Ray& ray) {
+    if (__builtin_expect(ray.path != nullptr, 0))
+        return matrixFrom(worldToObjectAlong(*ray.path, ray.time).m);
     return ray.instance ? matrixFrom(ray.instance->worldToObject) : identityTransform();
 }
 
 /* ---- the hit ---------------------------------------------------------------------------------------------------------------------- */
 
+/* The ray's direction in object space. */
+OXRT_INLINE float3 objectDirection(const Ray& ray) {
+    if (__builtin_expect(ray.path != nullptr, 0))
+        return ray.path->native ? transformVector(ray.path->native->worldToObject, ray.path->direction) : ray.path->direction;
+    return transformVectorFromWorldToObjectSpace(ray, ray.direction);
+}
+
 /* Which side of a triangle the ray meets: counter-clockwise in object space is the front, unless the instance flips it. */
 OXRT_INLINE bool isFrontFacing(const Ray& ray) {
-    const float3 direction = transformVectorFromWorldToObjectSpace(ray, ray.direction);
+    const float3 direction = objectDirection(ray);
     const float cosine = ray.normal.x * direction.x + ray.normal.y * direction.y + ray.normal.z * direction.z;
     const bool isFlipped = ray.instance && (ray.instance->flags & INSTANCE_FLIP_FACING);
     return (cosine < 0.0f) != isFlipped;
@@ -237,8 +257,29 @@ OXRT_INLINE TriangleVertices triangleVertices(const OxrtGeometry& geometry, uint
     const uint32_t* i = geometry.indices + 3 * uint64_t(primitive);
     return makeTuple(vertexOf(geometry, i[0]), vertexOf(geometry, i[1]), vertexOf(geometry, i[2]));
 }
-/* Corners in object space, the pre-transform applied. */
-OXRT_INLINE TriangleVertices getTriangleVertexData(const Ray& ray) { return triangleVertices(*ray.geometry, ray.primitive); }
+/* The floats of a vertex at a time: `width` numbers for each vertex, those of a key after those of the one before. */
+OXRT_INLINE void vertexAt(const OxrtTraversableView& gas, const OxrtGeometry& geometry, uint32_t index, uint32_t width, float time, float* values) {
+    const KeyPlace place = keyPlace(gas, time);
+    const float* a = geometry.vertices + width * (geometry.vertexCount * place.key + index);
+    const float* b = a + width * geometry.vertexCount;
+    for (uint32_t i = 0; i < width; ++i)
+        values[i] = blended(a[i], b[i], place.fraction);
+}
+inline __attribute__((noinline)) TriangleVertices movingTriangle(const OxrtTraversableView& gas, const OxrtGeometry& geometry, uint32_t primitive,
+                                                                 float time) {
+    const uint32_t* i = geometry.indices + 3 * uint64_t(primitive);
+    float v[3][3];
+    for (int corner = 0; corner < 3; ++corner)
+        vertexAt(gas, geometry, i[corner], 3, time, v[corner]);
+    return makeTuple(float3(v[0][0], v[0][1], v[0][2]), float3(v[1][0], v[1][1], v[1][2]), float3(v[2][0], v[2][1], v[2][2]));
+}
+OXRT_INLINE TriangleVertices triangleVerticesAt(const OxrtTraversableView& gas, const OxrtGeometry& geometry, uint32_t primitive, float time) {
+    return __builtin_expect(geometry.keyCount > 1, 0) ? movingTriangle(gas, geometry, primitive, time) : triangleVertices(geometry, primitive);
+}
+/* Corners in object space at the ray's time, the pre-transform applied. */
+OXRT_INLINE TriangleVertices getTriangleVertexData(const Ray& ray) {
+    return triangleVerticesAt(holderOf(ray), *ray.geometry, ray.primitive, ray.time);
+}
 
 /* Attribute words: the reported ones of a custom primitive, the barycentrics of a built-in one. */
 OXRT_INLINE uint32_t attributeWord(const Ray& ray, int index) {

@@ -1,83 +1,16 @@
 /* Tracing one ray: the query, and the closest-hit or miss program after it.
  *
- * `Programs`: see device_candidate.h. `Flags` is KnownFlags<value> where the ray flags are a constant, else uint32_t.
+ * `Programs`: see device_candidate.h; `Flags`: see device_query.h.
  */
 #ifndef OXRT_DEVICE_TRACE_H
 #define OXRT_DEVICE_TRACE_H
 
-#include <oxrt/device_custom.h>
+#include <oxrt/device_graph.h>
 
 namespace oxrt {
 inline namespace OXRT_ISA {
 
-template <uint32_t VALUE> struct KnownFlags {
-    OXRT_INLINE constexpr operator uint32_t() const { return VALUE; }
-};
-
-/* What is known of ray flags when the trace is compiled. */
-template <class Flags> struct FlagTraits {
-    static constexpr bool mayCull = true;
-    static constexpr bool mayRunAnyHit = true;
-    static constexpr bool mayRunClosestHit = true;
-    static constexpr bool alwaysTerminates = false;
-};
-template <uint32_t VALUE> struct FlagTraits<KnownFlags<VALUE>> {
-    static constexpr bool mayCull = (VALUE & RAY_CULL_ANY) != 0;
-    static constexpr bool mayRunAnyHit = (VALUE & RAY_ENFORCE_ANYHIT) != 0 || (VALUE & RAY_DISABLE_ANYHIT) == 0;
-    static constexpr bool mayRunClosestHit = (VALUE & RAY_DISABLE_CLOSESTHIT) == 0;
-    static constexpr bool alwaysTerminates = (VALUE & RAY_TERMINATE_ON_FIRST_HIT) != 0;
-};
-
-/* ---- queries ----------------------------------------------------------------------------------------------------------------------- */
-
-/* Embree reads origin and tnear in one piece right after the call, direction and time in another. Stored one by one they could not be
-   forwarded from the store buffer: Embree would wait for the cache, a tenth of a short ray's time. */
-using EmbreeRow = float __attribute__((vector_size(16), may_alias));
-static_assert(offsetof(RTCRay, org_x) == 0 && offsetof(RTCRay, tnear) == 12 && offsetof(RTCRay, dir_x) == 16 && offsetof(RTCRay, time) == 28);
-
-OXRT_INLINE void setEmbreeRay(RTCRay& target, const Ray& ray) {
-    EmbreeRow* rows = reinterpret_cast<EmbreeRow*>(&target);
-    rows[0] = EmbreeRow{ray.origin.x, ray.origin.y, ray.origin.z, nextUp(ray.tmin)};
-    rows[1] = EmbreeRow{ray.direction.x, ray.direction.y, ray.direction.z, ray.time};
-    target.tfar = nextDown(ray.tmax);
-    target.mask = ray.mask;
-    target.id = 0;
-    target.flags = 0;
-}
-
-/* Whether built-in primitives may need a decision under these ray flags. */
-template <class Programs> OXRT_INLINE bool mayFilter(uint32_t flags) {
-    const bool runsAnyHit = Programs::hasAnyHit && ((flags & RAY_ENFORCE_ANYHIT) || !(flags & RAY_DISABLE_ANYHIT));
-    return runsAnyHit || (flags & RAY_CULL_ANY);
-}
-/* Whether that is so even on geometries that disable any-hit programs, where Embree does not call the filter unasked. */
-template <class Programs> OXRT_INLINE bool filtersEverything(uint32_t flags, const OxrtTraversableView& root) {
-    const uint32_t overridingFlags = RAY_CULL_ANY | (Programs::hasAnyHit ? RAY_ENFORCE_ANYHIT : 0u);
-    return (flags & overridingFlags) || (root.needs & OXRT_SCENE_HAS_INSTANCE_FLAGS);
-}
-
-/* Embree's query arguments for traces that need callbacks; the ray's address goes with them. */
-template <class Programs, class Flags, class Arguments> OXRT_INLINE void setCallbacks(Arguments& arguments, Ray& ray) {
-    using Known = FlagTraits<Flags>;
-    ray.context.instID[0] = RTC_INVALID_GEOMETRY_ID;
-    ray.context.instPrimID[0] = RTC_INVALID_GEOMETRY_ID;
-    ray.isTerminated = false;
-    ray.closest = ray.tmax;
-    arguments.flags = RTC_RAY_QUERY_FLAG_NONE;
-    arguments.feature_mask = RTC_FEATURE_FLAG_ALL;
-    arguments.context = &ray.context;
-    arguments.filter = nullptr;
-    arguments.minWidth = 0.0f;
-    if constexpr (Known::mayCull || (Programs::hasAnyHit && Known::mayRunAnyHit)) {
-        if (mayFilter<Programs>(ray.flags))
-            arguments.filter = filterCandidate<Programs, Known::mayCull>;
-        if (filtersEverything<Programs>(ray.flags, *ray.root))
-            arguments.flags = RTC_RAY_QUERY_FLAG_INVOKE_ARGUMENT_FILTER;
-    }
-}
-
-template <class Programs, class Flags> inline constexpr bool hasCallbacks =
-    Programs::hasIntersection || FlagTraits<Flags>::mayCull || (Programs::hasAnyHit && FlagTraits<Flags>::mayRunAnyHit);
+/* ---- traversal --------------------------------------------------------------------------------------------------------------------- */
 
 /* True if something was hit; the hit is not known. */
 template <class Programs, class Flags> OXRT_INLINE bool traverseAny(Ray& ray) {
@@ -118,6 +51,7 @@ template <class Programs, class Flags> OXRT_INLINE bool traverseClosest(Ray& ray
         arguments.intersect = nullptr;
         if constexpr (Programs::hasIntersection) {
             ray.closestInEmbree = query.ray.tfar;
+            ray.committedKind = NO_REPORT;
             arguments.intersect = intersectCustom<Programs>;
         }
         services.intersect1(ray.root->scene, &query, &arguments);
@@ -125,7 +59,7 @@ template <class Programs, class Flags> OXRT_INLINE bool traverseClosest(Ray& ray
             return false;
         bool isClosestOwn = ray.isTerminated;
         if constexpr (Programs::hasIntersection)
-            isClosestOwn = isClosestOwn || query.ray.tfar == ray.closestInEmbree;
+            isClosestOwn = isClosestOwn || (ray.committedKind != NO_REPORT && query.ray.tfar == ray.closestInEmbree);
         enterHit(ray, query.hit, isClosestOwn ? ray.closest : query.ray.tfar);
         if constexpr (Programs::hasIntersection) {
             ray.kind = ray.committedKind;
@@ -168,16 +102,24 @@ template <class Programs> OXRT_INLINE void runClosestHit(Ray& ray, typename Prog
 /* Whether a traversal can find anything. */
 OXRT_INLINE bool canHit(const Ray& ray) { return ray.root && ray.root->scene && ray.tmin <= ray.tmax; }
 
+/* True if something was hit; the closest hit is entered into the ray, and the way to it into `path` where the ray then refers to it. */
+template <class Programs, class Flags> OXRT_INLINE bool findClosest(Ray& ray, GraphPath& path) {
+    if (__builtin_expect(isGraph(*ray.root), 0))
+        return traverseGraphClosest<Programs, Flags>(ray, path);
+    return traverseClosest<Programs, Flags>(ray);
+}
+
 /* Traversal and then the closest-hit or miss program. */
 template <class Programs, class Flags> OXRT_INLINE void traceNow(Ray& ray, typename Programs::Payload& payload, Place place) {
     using Known = FlagTraits<Flags>;
     constexpr bool runsClosestHit = Programs::hasClosestHit && Known::mayRunClosestHit;
+    GraphPath path;
     bool isHit = false;
     if (canHit(ray)) {
         if constexpr (Known::alwaysTerminates && !runsClosestHit)
-            isHit = traverseAny<Programs, Flags>(ray);
+            isHit = __builtin_expect(isGraph(*ray.root), 0) ? traverseGraphAny<Programs, Flags>(ray, path) : traverseAny<Programs, Flags>(ray);
         else
-            isHit = traverseClosest<Programs, Flags>(ray);
+            isHit = findClosest<Programs, Flags>(ray, path);
         if constexpr (Programs::mayThrow)
             if (ray.thread->exceptionPending)
                 return;
@@ -222,6 +164,7 @@ OXRT_INLINE void setRay(Ray& ray, OxrtThread& thread, uint64_t handle, const flo
     ray.tmin = tmin;
     ray.tmax = tmax;
     ray.time = Programs::usesTime ? time : 0.0f;
+    ray.path = nullptr;
     ray.mask = mask & 0xFF;
     ray.flags = flags & 0xFFFF;
     ray.sbtOffset = (sbtOffset | sbtStride >> 4) & 15; /* as in OptiX: the stride's bits 4 to 7 spill into the offset */

@@ -77,6 +77,7 @@ template <int W> struct RayLanes {
     Lanes<float, W> t; /* what getRayTmax gives */
     Lanes<uint32_t, W> mask;
     Lanes<uint32_t, W> sbtOffset, sbtStride, missIndex;
+    GraphPath* paths = nullptr; /* each lane's way to its hit in scenes that kernels walk through themselves, else null */
     uint32_t flags;
     Lanes<bool, W> active; /* the lanes that hit something, or missed */
     const OxrtInstanceView* commonInstance; /* if all active lanes hit one geometry: its instance or null */
@@ -136,8 +137,20 @@ template <class T, int W> OXRT_INLINE WordPlaces<W> placesIn(const T* array, Lan
 template <int W> OXRT_INLINE Lanes<bool, W> inInstance(const RayLanes<W>& ray) {
     if (!ray.root->instances)
         return false;
+/* The innermost instance on the way to the hit, null without. */
+OXRT_INLINE const OxrtInstanceView* innermostInstance(const GraphPath& path) { return path.native ? path.native : path.instance; }
+
+/* f(path, lane) in every active lane of a scene with paths; zero elsewhere. */
+template <class T, class F, int W> __attribute__((noinline)) Lanes<T, W> mapPaths(const RayLanes<W>& ray, T otherwise, F f) {
+    Lanes<T, W> result = otherwise;
+    eachLane(ray.active, [&](int lane) { result.set(lane, f(ray.paths[lane], lane)); });
+    return result;
+}
+
     return ray.active & (packetLanes<W>(ray.packet.hit.instID[0]) != RTC_INVALID_GEOMETRY_ID);
 }
+    if (ray.paths)
+        return mapPaths(ray, 0u, [](const GraphPath& path, int) { return innermostInstance(path) ? 1u : 0u; }) != 0u;
 template <int W> OXRT_INLINE WordPlaces<W> instancePlaces(const RayLanes<W>& ray) {
     return placesIn<OxrtInstanceView, W>(ray.root->instances, packetLanes<W>(ray.packet.hit.instID[0]));
 }
@@ -147,6 +160,13 @@ template <class T, int W> OXRT_INLINE Lanes<T, W> instanceField(const RayLanes<W
         T value = otherwise;
         if (ray.commonInstance)
             __builtin_memcpy(&value, reinterpret_cast<const char*>(ray.commonInstance) + offset, sizeof(T));
+    if (ray.paths)
+        return mapPaths(ray, otherwise, [=](const GraphPath& path, int) {
+            T value = otherwise;
+            if (const OxrtInstanceView* instance = innermostInstance(path))
+                __builtin_memcpy(&value, reinterpret_cast<const char*>(instance) + offset, sizeof(T));
+            return value;
+        });
         return value;
     }
     const Lanes<bool, W> mask = inInstance(ray);
@@ -159,6 +179,10 @@ template <int W> OXRT_INLINE AddressPlaces<W> geometryPlaces(const RayLanes<W>& 
     Lanes<uint64_t, W> geometries = reinterpret_cast<uint64_t>(ray.root->geometries);
     const Lanes<bool, W> mask = inInstance(ray);
     if (any(mask)) {
+    if (ray.paths)
+        return {mapPaths(ray, uint64_t(0), [&](const GraphPath& path, int lane) {
+            return reinterpret_cast<uint64_t>(structureOf(path).geometries + ray.packet.hit.geomID[lane]);
+        })};
         const AddressPlaces<W> child{gather<uint64_t, W>(instancePlaces(ray), OXRT_FIELD_OFFSET(OxrtInstanceView, child), mask)};
         geometries = select(mask, gather<uint64_t, W>(child, OXRT_FIELD_OFFSET(OxrtTraversableView, geometries), mask), geometries);
     }
@@ -199,7 +223,17 @@ template <int W> OXRT_INLINE Lanes<uint32_t, W> getInstanceIndex(const RayLanes<
 }
 template <int W> OXRT_INLINE Lanes<uint32_t, W> getClusterId(const RayLanes<W>&) { return ~0u; }
 template <int W> OXRT_INLINE Lanes<uint32_t, W> geometryType(const RayLanes<W>& ray) {
+    if (ray.paths)
+        return mapPaths(ray, 0u, [&](const GraphPath& path, int lane) {
+            return path.native ? ray.packet.hit.instID[0][lane] : path.instanceIndex;
+        });
     return OXRT_GEOMETRY_FIELD(uint32_t, ray, primitiveType);
+}
+/* Of all instances above the primitive. */
+template <int W> OXRT_INLINE Lanes<uint32_t, W> instanceSbtOffset(const RayLanes<W>& ray) {
+    if (ray.paths)
+        return mapPaths(ray, 0u, [](const GraphPath& path, int) { return path.sbtOffset + (path.native ? path.native->sbtOffset : 0); });
+    return instanceField<uint32_t>(ray, OXRT_FIELD_OFFSET(OxrtInstanceView, sbtOffset), 0u);
 }
 
 /* The scalar ray of one lane, with what the getters of a hit read: for device functions that few programs use. */
@@ -211,6 +245,7 @@ template <int W> OXRT_INLINE void scalarHit(Ray& one, const RayLanes<W>& ray, in
     one.direction = {packet.ray.dir_x[lane], packet.ray.dir_y[lane], packet.ray.dir_z[lane]};
     one.tmin = ray.tmin[lane];
     one.time = packet.ray.time[lane];
+    one.path = ray.paths ? ray.paths + lane : nullptr;
     one.flags = ray.flags;
     const RTCHit hit = {packet.hit.Ng_x[lane], packet.hit.Ng_y[lane], packet.hit.Ng_z[lane], packet.hit.u[lane], packet.hit.v[lane],
                         packet.hit.primID[lane], packet.hit.geomID[lane], {packet.hit.instID[0][lane]}, {0}};
@@ -284,8 +319,17 @@ template <class M, class V> OXRT_INLINE V normalThrough(const M& m, const V& n) 
         return throughInstance(ray, OXRT_FIELD_OFFSET(OxrtInstanceView, matrix), Wide<float3, W>(value),               \
                                [](const auto& m, const auto& x) { return through(m, x); });                            \
     }
+template <int W, class F> OXRT_INLINE Wide<float3, W> throughPaths(const RayLanes<W>& ray, const Wide<float3, W>& value, F transform) {
+    return mapHits(ray, [&](const Ray& one, int lane) {
+        float3 own;
+        extractLane(own, value, lane);
+        return transform(one, own);
+    });
+}
 OXRT_LANES_TRANSFORM(transformPointFromObjectToWorldSpace, pointThrough, objectToWorld)
 OXRT_LANES_TRANSFORM(transformPointFromWorldToObjectSpace, pointThrough, worldToObject)
+        if (ray.paths)                                                                                                 \
+            return throughPaths<W>(ray, Wide<float3, W>(value), [](const Ray& one, const float3& x) { return name(one, x); }); \
 OXRT_LANES_TRANSFORM(transformVectorFromObjectToWorldSpace, vectorThrough, objectToWorld)
 OXRT_LANES_TRANSFORM(transformVectorFromWorldToObjectSpace, vectorThrough, worldToObject)
 OXRT_LANES_TRANSFORM(transformNormalFromObjectToWorldSpace, normalThrough, worldToObject)
@@ -308,6 +352,8 @@ template <int W> OXRT_INLINE Wide<TriangleVertices, W> getTriangleVertexData(con
     Wide<float3, W> corners[3];
     if (ray.commonGeometry) {
         const WordPlaces<W> indices = placesIn<uint3, W>(reinterpret_cast<const uint3*>(ray.commonGeometry->indices), primitive);
+    if (ray.root->needs & OXRT_SCENE_HAS_MOTION)
+        return mapHits(ray, [](const Ray& one, int) { return getTriangleVertexData(one); });
         for (int i = 0; i < 3; ++i) {
             const Lanes<uint32_t, W> vertex = gather<uint32_t, W>(indices, 4 * i, mask);
             corners[i] = vertexAt<W>(placesIn<float3, W>(reinterpret_cast<const float3*>(ray.commonGeometry->vertices), vertex), mask);

@@ -58,6 +58,8 @@ template <int W> OXRT_INLINE void enterHits(RayLanes<W>& ray, Lanes<bool, W> hit
     ray.commonInstance = nullptr;
     ray.commonGeometry = nullptr;
     const uint32_t geometry = packet.geomID[lane];
+    if (ray.paths)
+        return; /* what lanes share is not looked for */
     const bool hasInstances = ray.root->instances;
     if (!hasInstances && ray.root->geometryCount == 1)
         ray.commonGeometry = ray.root->geometries;
@@ -75,8 +77,7 @@ template <int W> OXRT_INLINE void enterHits(RayLanes<W>& ray, Lanes<bool, W> hit
 /* The active lanes whose hit has a record. */
 template <int W> OXRT_INLINE Lanes<bool, W> findHitRecords(RayLanes<W>& ray) {
     const OxrtLaunch& launch = *ray.thread->thread->launch;
-    const Lanes<uint32_t, W> offset = instanceField<uint32_t>(ray, OXRT_FIELD_OFFSET(OxrtInstanceView, sbtOffset), 0u);
-    const Lanes<uint32_t, W> index = offset + getSbtGASIndex(ray) * ray.sbtStride + ray.sbtOffset;
+    const Lanes<uint32_t, W> index = instanceSbtOffset(ray) + getSbtGASIndex(ray) * ray.sbtStride + ray.sbtOffset;
     return findRecords(ray.records, launch, ray.active, launch.hitgroupRecords, launch.hitgroupStride, launch.hitgroupCount, index);
 }
 

@@ -142,6 +142,7 @@ template <int W> OXRT_INLINE void scalarRay(Ray& one, const RayLanes<W>& ray, vo
     one.missIndex = ray.missIndex[lane];
 }
 
+    one.path = nullptr;
 /* Enters the closest hit of one lane. */
 template <int W> OXRT_INLINE void enterScalarHit(RayLanes<W>& ray, const Ray& one, int lane) {
     auto& hit = ray.packet.hit;
@@ -151,9 +152,9 @@ template <int W> OXRT_INLINE void enterScalarHit(RayLanes<W>& ray, const Ray& on
     hit.u[lane] = one.u;
     hit.v[lane] = one.v;
     hit.primID[lane] = one.primitive;
-    const OxrtTraversableView& holder = one.instance ? *one.instance->child : *one.root;
-    hit.geomID[lane] = unsigned(one.geometry - holder.geometries);
-    hit.instID[0][lane] = one.instance ? unsigned(one.instance - one.root->instances) : RTC_INVALID_GEOMETRY_ID;
+    hit.geomID[lane] = unsigned(one.geometry - holderOf(one).geometries);
+    const bool isNative = one.path ? one.path->native != nullptr : one.instance != nullptr;
+    hit.instID[0][lane] = isNative ? getInstanceIndex(one) : RTC_INVALID_GEOMETRY_ID;
     ray.t.set(lane, one.t);
     if (isCustomGeometry(one)) {
         ray.kind.set(lane, one.kind);
@@ -176,9 +177,9 @@ __attribute__((noinline)) Lanes<bool, W> traverseLanes(RayLanes<W>& ray, Lanes<b
         scalarRay(one, ray, &own, lane);
         bool isHit;
         if constexpr (ANY)
-            isHit = traverseAny<Scalar, Flags>(one);
+            isHit = ray.paths ? traverseGraphAny<Scalar, Flags>(one, ray.paths[lane]) : traverseAny<Scalar, Flags>(one);
         else
-            isHit = traverseClosest<Scalar, Flags>(one);
+            isHit = ray.paths ? traverseGraphClosest<Scalar, Flags>(one, ray.paths[lane]) : traverseClosest<Scalar, Flags>(one);
         if constexpr (!isSame<typename Scalar::Payload, NoPayload>)
             insertLane(payload, own, lane);
         if constexpr (Scalar::mayThrow)
@@ -211,6 +212,8 @@ template <int W> void takeException(LanesThread<W>& thread, int lane) {
 
 template <class Programs, class Flags, bool ANY, int W>
 OXRT_INLINE Lanes<bool, W> traverse(RayLanes<W>& ray, Lanes<bool, W> mask, typename Programs::Payload& payload, bool isCoherent) {
+    if (__builtin_expect(ray.paths != nullptr, 0))
+        return traverseLanes<Programs, Flags, ANY>(ray, mask, payload);
     using Scalar = typename Programs::Scalar;
     if constexpr (!hasCallbacks<Scalar, Flags>)
         return traversePacket<Flags, ANY>(ray, mask, isCoherent);
@@ -314,6 +317,9 @@ OXRT_INLINE void trace(LanesThread<W>& thread, Lanes<bool, W> mask, uint64_t han
     setPacket(packet.dir_z, direction.z);
     setPacket(packet.time, Scalar::usesTime ? time : Lanes<float, W>(0.0f));
     setPacket(packet.tfar, nextDown(tmax));
+    GraphPath paths[W];
+    if (ray.root && __builtin_expect(isGraph(*ray.root), 0))
+        ray.paths = paths;
     ray.mask = visibility & 0xFFu;
     setPacket(packet.mask, ray.mask);
     setPacket<W>(packet.flags, 0u);

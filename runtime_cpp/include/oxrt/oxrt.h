@@ -44,6 +44,7 @@ typedef enum OxrtResult {
 
 typedef struct OxrtContextImpl* OxrtContext;
 typedef struct OxrtAccelImpl* OxrtAccel;
+typedef struct OxrtTransformImpl* OxrtTransform;
 typedef struct OxrtPipelineImpl* OxrtPipeline;
 typedef uint64_t OxrtTraversableHandle;
 
@@ -137,6 +138,7 @@ typedef struct OxrtAccelInfo {
     uint64_t primitiveCount;
     uint32_t isGas;
     uint32_t needs;         /* OXRT_SCENE_... of pipeline.h */
+    uint32_t hasNativeInstances; /* an IAS that Embree walks through by itself: one level over static structures */
 } OxrtAccelInfo;
 
 /* Builds at once; on failure nothing is made. An IAS keeps its children alive. */
@@ -148,6 +150,24 @@ OXRT_API OxrtResult oxrtAccelUpdate(OxrtAccel accel, const OxrtBuildInput* input
 OXRT_API OxrtResult oxrtAccelGetInfo(OxrtAccel accel, OxrtAccelInfo* info);
 /* The handle is stale from here on; memory goes when no IAS and no launch uses it. */
 OXRT_API OxrtResult oxrtAccelDestroy(OxrtAccel accel);
+
+/* ---- transforms ---------------------------------------------------------------------------------------------------------------- */
+
+enum { OXRT_TRANSFORM_STATIC = 1, OXRT_TRANSFORM_MATRIX_MOTION = 2, OXRT_TRANSFORM_SRT_MOTION = 3 }; /* OptiX's OptixTransformType */
+
+/* keys: static 12 floats, a 3x4 row-major matrix; matrix motion 12 for each key; SRT motion 16 for each key in OptiX's order
+   (sx a b pvx sy c pvy sz pvz qx qy qz qw tx ty tz). Copied. */
+typedef struct OxrtTransformOptions {
+    uint32_t type;
+    OxrtTraversableHandle child;
+    const float* keys;
+    OxrtMotionOptions motion; /* of motion transforms: at least two keys, timeBegin before timeEnd */
+} OxrtTransformOptions;
+
+/* A traversable above another one, which it keeps alive; child of instances and transforms, or root of traces. */
+OXRT_API OxrtResult oxrtTransformCreate(OxrtContext context, const OxrtTransformOptions* options, OxrtTransform* transform);
+OXRT_API OxrtResult oxrtTransformGetHandle(OxrtTransform transform, OxrtTraversableHandle* handle);
+OXRT_API OxrtResult oxrtTransformDestroy(OxrtTransform transform);
 
 /* ---- textures ----------------------------------------------------------------------------------------------------------------- */
 

@@ -13,7 +13,7 @@
 extern "C" {
 #endif
 
-enum { OXRT_PIPELINE_ABI = 1 };
+enum { OXRT_PIPELINE_ABI = 2 };
 
 /* ---- SBT records -------------------------------------------------------------------------------------------------------------- */
 
@@ -68,13 +68,14 @@ typedef struct OxrtInstanceView {
     const struct OxrtTraversableView* child;
 } OxrtInstanceView;
 
-/* needs of a scene, OR of: */
+/* needs of a scene, OR of the following. One with HAS_MOTION or MULTI_LEVEL is walked through by the kernels themselves: Embree sees one
+   structure at a time. */
 enum { OXRT_SCENE_HAS_CUSTOM = 1, OXRT_SCENE_HAS_MICROMAPS = 2, OXRT_SCENE_HAS_GEOMETRY_FLAGS = 4, OXRT_SCENE_HAS_INSTANCE_FLAGS = 8,
        OXRT_SCENE_HAS_MASKS = 16, OXRT_SCENE_HAS_CURVES = 32, OXRT_SCENE_HAS_SPHERES = 64, OXRT_SCENE_HAS_MOTION = 128,
        OXRT_SCENE_MULTI_LEVEL = 256 };
 
 typedef struct OxrtTraversableView {
-    void* scene;     /* RTCScene, NULL where nothing can be hit */
+    void* scene;     /* RTCScene, NULL where nothing can be hit; of transforms that of the child, which is in another space */
     uint32_t type;
     uint32_t needs;  /* of this traversable and everything below */
     const OxrtGeometry* geometries;    /* GAS */
@@ -85,6 +86,11 @@ typedef struct OxrtTraversableView {
     uint32_t keyCount;
     uint32_t motionFlags;
     float timeBegin, timeEnd;
+    const struct OxrtTraversableView* child; /* transforms */
+    const float* transformKeys;              /* static: matrix and inverse, 12 floats each; matrix motion: 12 per key; SRT motion: 16 */
+    const struct OxrtTraversableView* instanceTraversables; /* IAS: what the handle of each instance leads to */
+    uint32_t hasNativeInstances; /* IAS: `scene` holds Embree's instances, else one user geometry with a primitive for each instance */
+    uint32_t buildFlags;
 } OxrtTraversableView;
 
 /* handle = generation << 32 | slot; a handle whose generation is not the slot's is stale. Generation 0 is never used. */

@@ -184,7 +184,11 @@ def put_primitive(ray: uint32, event: uint32):
         handle = ox.get_transform_list_handle(i)
         params.handles[ray, event, TRANSFORM_HANDLES + i] = Handle(handle)
         params.words[ray, event, TRANSFORM_TYPES + i] = uint32(ox.get_transform_type_from_handle(handle))
-    params.handles[ray, event, GAS_HANDLE] = Handle(ox.get_gas_traversable_handle())
+    gas = ox.get_gas_traversable_handle()
+    params.handles[ray, event, GAS_HANDLE] = Handle(gas)
+    params.numbers[ray, event, MOTION_BEGIN] = ox.get_gas_motion_time_begin(gas)
+    params.numbers[ray, event, MOTION_END] = ox.get_gas_motion_time_end(gas)
+    params.words[ray, event, MOTION_STEPS] = ox.get_gas_motion_step_count(gas)
     to_world = ox.get_object_to_world_transform_matrix()
     to_object = ox.get_world_to_object_transform_matrix()
     for row in range(3):
