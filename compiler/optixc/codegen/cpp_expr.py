@@ -227,7 +227,11 @@ class Expressions:
         if precedence in _NEEDS_PARENTHESES:
             is_chain = isinstance(node.left, Binary) and node.left.op is node.op and precedence in (BIT_AND, BIT_OR, BIT_XOR)
             floor = ADD if precedence in (COMPARE, EQUAL) else UNARY
-            return Code(f"{self.at(node.left, precedence if is_chain else floor)} {symbol} {self.at(node.right, floor)}", precedence)
+            text = f"{self.at(node.left, precedence if is_chain else floor)} {symbol} {self.at(node.right, floor)}"
+            if precedence in (BIT_AND, BIT_XOR, BIT_OR) and self._dialect.type_name(node.type, node) == "bool":
+                # C++ makes an int of them.
+                return Code(f"bool({text})")
+            return Code(text, precedence)
         return Code(f"{self.at(node.left, precedence)} {symbol} {self.at(node.right, precedence + 1)}", precedence)
 
     def _convert(self, node: Convert) -> Code:

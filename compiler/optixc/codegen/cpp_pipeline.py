@@ -39,7 +39,7 @@ class PipelineFile:
         self._pipeline = pipeline
         self._features = features
         self._writer = Writer()
-        self._scope = Scope(taken=("number", "programs", "variants", "Payload", "Programs"))
+        self._scope = Scope(taken=("number", "programs", "variants", "Payload", "Programs", "LANES", "Wide", "Mask", "Lanes", "Rays"))
         self._types = TypeNames(structs_of(pipeline), self._scope)
         needs = needs_of_pipeline(pipeline)
         self._classes = program_classes(pipeline, needs)

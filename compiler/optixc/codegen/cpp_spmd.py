@@ -182,7 +182,7 @@ class LaneFunction:
             return
         root = place_root(target)
         assert root is not None
-        value = self._expressions.text(statement.value)
+        value = self._expressions.stored(self._expressions.text(statement.value), statement.value, target.type)
         place = self._expressions.place(target)
         varying_index = next((node for node in _chain(target) if isinstance(node, IndexRef) and self._dialect.varies(node.index)), None)
         if varying_index is not None:

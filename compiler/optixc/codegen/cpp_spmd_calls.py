@@ -82,7 +82,8 @@ class LaneCalls:
         """A store to an item of a local's fixed array, vector or matrix by an index that varies, or to a part of that item."""
         base = self._expressions.place(indexed.base)
         part = self._part_of_item(target, indexed)
-        setting = f"[&, value = {self._expressions.wide(value)}](auto& item, Mask own) {{ oxrt::assign(own, {part}, value); }}"
+        text = self._expressions.stored(self._expressions.wide(value), value, target.type)
+        setting = f"[&, value = {text}](auto& item, Mask own) {{ oxrt::assign(own, {part}, value); }}"
         return f"oxrt::eachItem({self._mask}, {base}, {self._expressions.text(indexed.index)}, {setting});"
 
     def _part_of_item(self, place: Expr, item: IndexRef) -> str:

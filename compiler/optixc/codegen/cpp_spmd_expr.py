@@ -29,7 +29,7 @@ from optixc.ir.nodes import (
     Logical,
     Select,
 )
-from optixc.ir.types import Scalar, Tuple, Type, Vector
+from optixc.ir.types import Scalar, ScalarKind, Struct, Tuple, Type, Vector, scalar_of
 from optixc.ir.walk import subexpressions
 from optixc.passes.uniformity import Clone, varies
 
@@ -215,11 +215,18 @@ class LaneExpressions(Expressions):
             right = self.code(node.right)
         return self.lanes.logical(node, Code(test), right)
 
-    def _members(self, struct: object, node: Construct, arguments: list[str]) -> list[str]:
+    def stored(self, text: str, value: Expr, target: Type) -> str:
+        """Lanes hold storage numbers widened: they are narrowed where they are written."""
+        scalar = scalar_of(target)
+        if scalar is not None and scalar.kind is not ScalarKind.BOOL and scalar.bits < 32 and target != value.type:
+            return f"oxrt::convert<{self.lanes.type_name(scalar, Literal(0, scalar))}>({text})"
+        return super().stored(text, value, target)
+
+    def _members(self, struct: Struct, node: Construct, arguments: list[str]) -> list[str]:
         """Initialisers of a wide struct: whole values that are uniform are spread first."""
-        texts = super()._members(struct, node, arguments)  # type: ignore[arg-type]
         if not self.lanes.varies(node):
-            return texts
+            return super()._members(struct, node, arguments)
+        texts = [self.stored(text, value, field.type) for field, value, text in zip(struct.fields, node.arguments, arguments, strict=False)]
         return [
             text if isinstance(argument.type, Scalar | Vector) or self.lanes.varies(argument) else self.wide(argument)
             for argument, text in zip(node.arguments, texts, strict=True)

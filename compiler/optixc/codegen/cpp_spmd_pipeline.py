@@ -53,9 +53,9 @@ class SpmdFile(PipelineFile):
 
     def __init__(self, pipeline: Pipeline, features: Features) -> None:
         super().__init__(pipeline, features)
-        for name in ("LANES", "Wide", "Mask", "Lanes", "Rays", "mask", "returned", "result", "lane", "one"):
+        for name in ("mask", "returned", "result", "lane", "one"):
             self._scope.name(name)
-        self._wide = WideTypes(self._types, structs_of(pipeline), pipeline.options.lanes)
+        self._wide = WideTypes(self._types, structs_of(pipeline), pipeline.options.lanes, self._scope)
         self._clones = Clones(pipeline, self._wide, self._signatures, self._scope)
         self._throws = options_of(pipeline).traces_throw
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from optixc.codegen.cpp_types import TypeNames, field_names, is_wrapped
+from optixc.codegen.names import Scope
 from optixc.codegen.writer import Writer
 from optixc.ir.types import Scalar, Struct, StructKind, Type, Vector, Void
 
@@ -10,10 +11,11 @@ from optixc.ir.types import Scalar, Struct, StructKind, Type, Vector, Void
 class WideTypes:
     """Names of the types of one generated file, uniform and varying. `lanes` is 8 or 16."""
 
-    def __init__(self, types: TypeNames, structs: list[Struct], lanes: int) -> None:
+    def __init__(self, types: TypeNames, structs: list[Struct], lanes: int, scope: Scope) -> None:
         self.types = types
         self.lanes = lanes
         self._structs = structs
+        self._wide_names = {struct: scope.name(f"{types.struct(struct)}Wide") for struct in structs}
 
     def name(self, type_: Type, varies: bool) -> str:
         """The C++ type of a value; `Wide<T>` where it may differ between lanes."""
@@ -64,4 +66,4 @@ class WideTypes:
             writer.line()
 
     def _wide(self, struct: Struct) -> str:
-        return f"{self.types.struct(struct)}Wide"
+        return self._wide_names[struct]

@@ -248,19 +248,20 @@ def check_compare(c: Context, node: ast.Compare) -> ExprInfo:
             return c.error("OX405", node, "`in` is not part of restricted Python", "compare with each value")
         if isinstance(op, ast.Is | ast.IsNot):
             return c.error("OX405", node, "`is` is not part of restricted Python", "write == or !=")
-    if all(info.constant is not None for info in infos):
-        values = [info.constant for info in infos if info.constant is not None]
-        results = [fold_comparison(op, a, b) for op, a, b in zip(node.ops, values, values[1:], strict=False)]
+    values = [info.constant for info in infos if info.constant is not None]
+    results = [fold_comparison(op, a, b) for op, a, b in zip(node.ops, values, values[1:], strict=False)]
+    constant = all(results) if len(values) == len(infos) else None
+    if constant is not None and all(is_weak(info.type) for info in infos):
         for operand in operands:
             c.settle(operand)
-        return ExprInfo(t.BOOL, constant=all(results))
+        return ExprInfo(t.BOOL, constant=constant)
     common = _common_of(c, node, operands)
     if common is None:
         return ExprInfo(INVALID)
     for operand in operands:
         if not c.coerce(operand, common, "this operand"):
             return ExprInfo(INVALID)
-    return ExprInfo(t.BOOL, writes=any(info.writes for info in infos))
+    return ExprInfo(t.BOOL, constant=constant, writes=any(info.writes for info in infos))
 
 
 def _common_of(c: Context, node: ast.Compare, operands: Sequence[ast.expr]) -> t.Type | None:

@@ -108,6 +108,17 @@ template <class T, int W> requires(!isFloating<T>) OXRT_INLINE Lanes<T, W> modul
     return modulo(a, Lanes<T, W>(b));
 }
 
+/* A number that all lanes share beside one that they do not. */
+template <Number A, Number B> requires(!isSame<A, B>) OXRT_INLINE Common<A, B> floorDivide(A a, B b) {
+    return floorDivide(Common<A, B>(a), Common<A, B>(b));
+}
+template <Number A, Number B> requires(!isSame<A, B>) OXRT_INLINE Common<A, B> modulo(A a, B b) {
+    return modulo(Common<A, B>(a), Common<A, B>(b));
+}
+template <Number A, Number B> requires(!isSame<A, B>) OXRT_INLINE Common<A, B> copysign(A magnitude, B sign) {
+    return copysign(Common<A, B>(magnitude), Common<A, B>(sign));
+}
+
 template <class T, int W> requires(!isFloating<T> && isSigned<T>) OXRT_INLINE Lanes<T, W> abs(Lanes<T, W> a) { return maximum(a, -a); }
 template <class T, int W> requires(!isFloating<T> && !isSigned<T>) OXRT_INLINE Lanes<T, W> abs(Lanes<T, W> a) { return a; }
 

@@ -18,17 +18,9 @@ template <class T, int W> struct VaryingArray;
 template <class T, int W> struct WideType;
 template <class T, int W> using Wide = typename WideType<T, W>::Type;
 
-/* What arithmetic uses for a storage number. */
-template <class T> struct WidenedNumber { using Type = T; };
-template <> struct WidenedNumber<int8_t> { using Type = int32_t; };
-template <> struct WidenedNumber<int16_t> { using Type = int32_t; };
-template <> struct WidenedNumber<uint8_t> { using Type = uint32_t; };
-template <> struct WidenedNumber<uint16_t> { using Type = uint32_t; };
-template <> struct WidenedNumber<half> { using Type = float; };
-
 template <Scalar T, int W> struct WideType<T, W> { using Type = Lanes<typename WidenedNumber<T>::Type, W>; };
-template <class T, int N, int W> struct WideType<Vector<T, N>, W> { using Type = Vector<Wide<T, W>, N>; };
-template <class T, int R, int C, int W> struct WideType<Matrix<T, R, C>, W> { using Type = Matrix<Wide<T, W>, R, C>; };
+template <Scalar T, int N, int W> struct WideType<Vector<T, N>, W> { using Type = Vector<Wide<T, W>, N>; };
+template <Scalar T, int R, int C, int W> struct WideType<Matrix<T, R, C>, W> { using Type = Matrix<Wide<T, W>, R, C>; };
 template <class T, int SIZE, int W> struct WideType<FixedArray<T, SIZE>, W> { using Type = FixedArray<Wide<T, W>, SIZE>; };
 template <class T, int RANK, int W> struct WideType<Array<T, RANK>, W> { using Type = VaryingArray<Array<T, RANK>, W>; };
 template <class... T, int W> struct WideType<Tuple<T...>, W> { using Type = Tuple<Wide<T, W>...>; };

@@ -240,6 +240,34 @@ OXRT_INLINE constexpr Matrix<Common<A, B>, R, C> multiply(const Matrix<A, R, K>&
     return result;
 }
 
+#define OXRT_MATRIX_OPERATOR(op)                                                                                        \
+    template <class A, class B, int R, int C>                                                                           \
+    OXRT_INLINE constexpr Matrix<Common<A, B>, R, C> operator op(const Matrix<A, R, C>& a, const Matrix<B, R, C>& b) {  \
+        Matrix<Common<A, B>, R, C> result;                                                                              \
+        for (int i = 0; i < R; ++i)                                                                                     \
+            result[i] = a[i] op b[i];                                                                                   \
+        return result;                                                                                                  \
+    }
+OXRT_MATRIX_OPERATOR(+)
+OXRT_MATRIX_OPERATOR(-)
+#undef OXRT_MATRIX_OPERATOR
+
+template <class A, Number B, int R, int C> OXRT_INLINE constexpr Matrix<Common<A, B>, R, C> operator*(const Matrix<A, R, C>& m, const B& x) {
+    Matrix<Common<A, B>, R, C> result;
+    for (int i = 0; i < R; ++i)
+        result[i] = m[i] * x;
+    return result;
+}
+template <Number A, class B, int R, int C> OXRT_INLINE constexpr Matrix<Common<A, B>, R, C> operator*(const A& x, const Matrix<B, R, C>& m) {
+    return m * x;
+}
+template <class T, int R, int C> OXRT_INLINE constexpr Matrix<T, R, C> operator-(const Matrix<T, R, C>& m) {
+    Matrix<T, R, C> result;
+    for (int i = 0; i < R; ++i)
+        result[i] = -m[i];
+    return result;
+}
+
 }  // namespace OXRT_ISA
 }  // namespace oxrt
 

@@ -154,7 +154,7 @@ void closesthit_mixed_lanes([[maybe_unused]] Rays& trace, [[maybe_unused]] Mask 
 #line 49 "shader.py"
 void closesthit_alike_lanes([[maybe_unused]] Lanes& thread, [[maybe_unused]] Mask mask, Wide<Alike>& alike) {
     oxrt::assign(mask, alike.was_hit, !Wide<bool>(alike.was_hit));
-    oxrt::assign(mask, alike.tag, 7u);
+    oxrt::assign(mask, alike.tag, oxrt::convert<uint8_t>(7u));
 }
 
 #line 55 "shader.py"
