@@ -8,6 +8,7 @@ from __future__ import annotations
 import argparse
 import ast
 import json
+import os
 import shutil
 import sys
 from collections.abc import Sequence
@@ -19,6 +20,7 @@ from optixc.cache import Cache, default_folder, max_size
 from optixc.codegen.header import emit_header
 from optixc.diagnostics import CompileError
 from optixc.errors import FileIoError, InvalidValueError, OptixError
+from optixc.frontend.compile import parse_tree
 from optixc.frontend.print_types import print_types
 from optixc.ir import layout, nodes
 from optixc.ir.text import print_module
@@ -27,6 +29,7 @@ from optixc.options import MAX_TRACE_DEPTH, TARGETS, BoundValue, CompileOptions
 from optixc.version import __version__
 
 EXIT_SHADER, EXIT_USAGE, EXIT_TOOLCHAIN = 1, 2, 3
+EXIT_INTERRUPTED = 130  # as shells say it: 128 and the number of SIGINT
 EMIT_FORMS = ("ast", "types", "ir", "cpp", "asm", "header")
 
 
@@ -50,6 +53,12 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except OptixError as error:
         print(f"optixc: {error}", file=sys.stderr)
         return EXIT_USAGE
+    except BrokenPipeError:
+        # Whoever reads the output (`| head`) has seen enough; what is left must not fail when Python flushes it.
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return 0
+    except KeyboardInterrupt:
+        return EXIT_INTERRUPTED
 
 
 def _parser() -> argparse.ArgumentParser:
@@ -84,7 +93,7 @@ def _compile(chosen: argparse.Namespace) -> int:
     if not chosen.shader.is_file():
         raise FileIoError(f"{chosen.shader} is not a file")
     if chosen.emit == "ast":
-        print(ast.dump(ast.parse(chosen.shader.read_text(encoding="utf-8-sig"), str(chosen.shader)), indent=2))
+        print(ast.dump(parse_tree(chosen.shader), indent=2))
         return 0
     options = CompileOptions(
         max_trace_depth=chosen.max_trace_depth,

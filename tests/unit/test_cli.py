@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import json
+import subprocess
+import sys
 from pathlib import Path
 
 import pytest
 
-from optixc import cli, toolchain
+from optixc import cli, driver, toolchain
 
 SHADER = """import optixc as ox
 from half import half
@@ -91,6 +93,36 @@ def test_errors_of_the_shader(shader: Path, capsys: pytest.CaptureFixture[str]) 
     assert printed.count("shader.py:14:") == 2
     assert printed.count("error[OX") == 2
     assert "Traceback" not in printed
+
+
+@pytest.mark.parametrize("form", [*cli.EMIT_FORMS, None])
+@pytest.mark.parametrize("text", [b"def f(:\n", b"def f():\n\tif 1:\n        pass\n", b"# \xff\n", b"x = 1\0\n"])
+def test_files_that_are_no_python(shader: Path, capsys: pytest.CaptureFixture[str], form: str | None, text: bytes) -> None:
+    shader.write_bytes(text)
+    assert cli.main(["shader.py", *(["--emit", form] if form else [])]) == cli.EXIT_SHADER
+    assert "error[OX101]" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("name", driver.pass_names())
+def test_every_pass_can_be_printed(shader: Path, capsys: pytest.CaptureFixture[str], name: str) -> None:
+    assert cli.main(["shader.py", "--print-after", name]) == 0
+    printed = capsys.readouterr().out
+    assert "__raygen__fill" in printed
+    assert "#include" not in printed
+
+
+def test_a_reader_that_has_seen_enough(shader: Path) -> None:
+    command = f"'{sys.executable}' -m optixc.cli shader.py --emit asm | head -1"
+    done = subprocess.run(["bash", "-c", f"set -o pipefail; {command}"], capture_output=True, text=True, check=False)
+    assert (done.returncode, done.stderr) == (0, "")
+
+
+def test_ctrl_c_is_no_traceback(shader: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def interrupted(*arguments: object) -> None:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(driver, "build", interrupted)
+    assert cli.main(["shader.py"]) == cli.EXIT_INTERRUPTED
 
 
 @pytest.mark.parametrize("arguments", [[], ["none.py"], ["shader.py", "--simd", "3"], ["shader.py", "--bind", "scale"]])

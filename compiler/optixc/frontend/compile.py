@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ast
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -37,6 +38,15 @@ def compile_file(path: str | Path, include_dirs: Sequence[str | Path] = ()) -> F
     diagnostics = Diagnostics()
     with without_collection():
         return _compile_scope(parse_path(Path(path), diagnostics), diagnostics, include_dirs)
+
+
+def parse_tree(path: str | Path) -> ast.Module:
+    """The file's tree alone. Raises CompileError if it is not valid Python."""
+    diagnostics = Diagnostics()
+    file = parse_path(Path(path), diagnostics)
+    if file is None:
+        raise CompileError(diagnostics.in_order())
+    return file.tree
 
 
 def compile_text(text: str, path: str, include_dirs: Sequence[str | Path] = ()) -> FrontendResult:
