@@ -27,6 +27,7 @@ from optixc.host.sbt import ShaderBindingTable
 from optixc.host.scalars import float16, float32, float64, int8, int16, int32, int64, uint8, uint16, uint32, uint64
 from optixc.host.structs import attributes, copy, payload, payload_word, struct
 from optixc.host.texture import Texture2D
+from optixc.host.transforms import Transform
 from optixc.host.vectors import (
     bool2,
     bool3,
@@ -35,7 +36,6 @@ from optixc.host.vectors import (
     char3,
     char4,
     double2,
-from optixc.host.transforms import Transform
     double3,
     double4,
     float2,
@@ -97,6 +97,7 @@ __all__ = [
     "Texture",
     "Texture2D",
     "ToolchainError",
+    "Transform",
     "Traversable",
     "__version__",
     "attributes",
@@ -106,7 +107,6 @@ __all__ = [
     "char2",
     "char3",
     "char4",
-    "Transform",
     "copy",
     "device",
     "double2",
@@ -131,6 +131,7 @@ __all__ = [
     "int16",
     "int32",
     "int64",
+    "interpret",
     "launch_params",
     "longlong2",
     "longlong3",
