@@ -125,7 +125,7 @@ void checkHitLayout(const EmbreeLibrary& library, RTCDevice device)
     library.rtcCommitGeometry(triangle);
     library.rtcAttachGeometryByID(inner, triangle, 5);
     library.rtcReleaseGeometry(triangle);
-    library.rtcCommitScene(inner);
+    library.rtcJoinCommitScene(inner);
 
     const RTCScene outer = library.rtcNewScene(device);
     const RTCGeometry instance = library.rtcNewGeometry(device, RTC_GEOMETRY_TYPE_INSTANCE);
@@ -135,7 +135,7 @@ void checkHitLayout(const EmbreeLibrary& library, RTCDevice device)
     library.rtcAttachGeometryByID(outer, instance, 7);
     library.rtcReleaseGeometry(instance);
     library.rtcReleaseScene(inner);
-    library.rtcCommitScene(outer);
+    library.rtcJoinCommitScene(outer);
 
     // Room behind the hit: a build with more levels writes there.
     struct {

@@ -19,6 +19,7 @@ namespace oxrt {
     USE(rtcSetSceneFlags)                                                                                                                  \
     USE(rtcSetSceneBuildQuality)                                                                                                           \
     USE(rtcCommitScene)                                                                                                                    \
+    USE(rtcJoinCommitScene)                                                                                                                \
     USE(rtcGetSceneBounds)                                                                                                                 \
     USE(rtcAttachGeometryByID)                                                                                                             \
     USE(rtcGetGeometry)                                                                                                                    \
@@ -28,8 +29,8 @@ namespace oxrt {
     USE(rtcEnableGeometry)                                                                                                                 \
     USE(rtcDisableGeometry)                                                                                                                \
     USE(rtcSetGeometryBuildQuality)                                                                                                        \
-    USE(rtcSetGeometryMask)                                                                                                                \
     USE(rtcSetGeometryTimeStepCount)                                                                                                       \
+    USE(rtcSetGeometryMask)                                                                                                                \
     USE(rtcSetGeometryUserData)                                                                                                            \
     USE(rtcSetSharedGeometryBuffer)                                                                                                        \
     USE(rtcUpdateGeometryBuffer)                                                                                                           \
