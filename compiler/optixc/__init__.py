@@ -25,6 +25,14 @@ from optixc.host.matrices import float3x3, float3x4, float4x4
 from optixc.host.pipeline import Pipeline, PipelineReport
 from optixc.host.sbt import ShaderBindingTable
 from optixc.host.scalars import float16, float32, float64, int8, int16, int32, int64, uint8, uint16, uint32, uint64
+from optixc.host.stack_sizes import (
+    StackSizes,
+    util_accumulate_stack_sizes,
+    util_compute_stack_sizes,
+    util_compute_stack_sizes_css_cc_tree,
+    util_compute_stack_sizes_dc_split,
+    util_compute_stack_sizes_simple_path_tracer,
+)
 from optixc.host.structs import attributes, copy, payload, payload_word, struct
 from optixc.host.texture import Texture2D
 from optixc.host.transforms import Transform
@@ -94,6 +102,7 @@ __all__ = [
     "ProgramGroup",
     "Record",
     "ShaderBindingTable",
+    "StackSizes",
     "Texture",
     "Texture2D",
     "ToolchainError",
@@ -160,6 +169,11 @@ __all__ = [
     "ushort2",
     "ushort3",
     "ushort4",
+    "util_accumulate_stack_sizes",
+    "util_compute_stack_sizes",
+    "util_compute_stack_sizes_css_cc_tree",
+    "util_compute_stack_sizes_dc_split",
+    "util_compute_stack_sizes_simple_path_tracer",
     "write_image",
 ]
 __all__ += enums.__all__

@@ -25,17 +25,20 @@ from optixc.frontend.compile import FrontendResult, compile_file, compile_functi
 from optixc.installation import include_folder
 from optixc.ir import layout, nodes
 from optixc.ir import types as t
-from optixc.ir.walk import expressions
+from optixc.ir.walk import expressions, statements
 from optixc.options import BoundValue, CompileOptions
 from optixc.passes.features import Features, features
 from optixc.passes.pipeline import LinkError, link
 from optixc.passes.specialize import parameter_path
+from optixc.stack_usage import frames_of_programs
 from optixc.version import __version__
 
 PrintAfter = Callable[[str, nodes.Pipeline], None]
 
 SPMD_LANES: tuple[int, ...] = (8, 16)
 """Packet widths that the emitter knows."""
+
+FRAME_BASE, RAY_SIZE = 128, 512
 
 
 class Unit:
@@ -121,11 +124,17 @@ def build(units: Sequence[Unit], names: Sequence[str], options: CompileOptions, 
     key = digest("library", emitted.text, *plan.flags(), compiler.identity, *_surroundings(plan))
     entry = store.find(key)
     if entry is None:
-        entry = store.store(key, {}, lambda output: toolchain.compile_shared(emitted.text, output, compiler, plan))
+        manifest: Json = {}
+
+        def produce(output: Path) -> None:
+            manifest["frames"] = toolchain.compile_shared(emitted.text, output, compiler, plan)
+
+        entry = store.store(key, manifest, produce)
     params = _describe_params(emitted.pipeline.params)
     report = _describe(emitted, options, compiler)
     report["bound_values"] = _describe_bound([unit.result.module for unit in units], emitted.pipeline.params, emitted.pipeline.options)
     programs = [_describe_program(program) for program in emitted.pipeline.programs]
+    report["stack"] = frames_of_programs(entry.manifest.get("frames", {}), [program.name for program in emitted.pipeline.programs])
     if known is not None:
         store.write_note(known, {"entry": key, "params": params, "report": report, "programs": programs})
     finished = {**report, "compile_seconds": time.perf_counter() - began, "cache_hit": entry.hit}
@@ -190,7 +199,15 @@ def _describe_program(program: nodes.Function) -> Json:
         "record": layout.describe(record) if isinstance(record, t.Struct) else None,
         "record_name": record.name if described and isinstance(record, t.Struct) else None,
         "source": str(program.span),
+        "stack": _estimated_frame(program),
     }
+
+
+def _estimated_frame(program: nodes.Function) -> int:
+    """Bytes of a program that is in no pipeline yet: twice its locals, and a ray for each of its traces."""
+    locals_ = sum(layout.size_of(local.type) for local in program.locals if not isinstance(local.type, t.Tuple | t.Void))
+    traces = sum(isinstance(statement, nodes.Trace) for statement in statements(program.body))
+    return FRAME_BASE + 2 * locals_ + RAY_SIZE * traces
 
 
 def _describe_params(params: t.Struct | None) -> Json | None:
@@ -205,6 +222,7 @@ def _describe(emitted: Emitted, options: CompileOptions, compiler: toolchain.Com
         "programs": [program.name for program in emitted.pipeline.programs],
         "features": {feature.name: feature.describe() for feature in emitted.features.items},
         "traces": [],
+        "is_any_graph": int(options.pipeline.traversable_graph_flags) == 0,
         "ignored": ["allow_clustered_geometry"] if options.pipeline.allow_clustered_geometry else [],
     }
 

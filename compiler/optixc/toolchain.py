@@ -19,6 +19,7 @@ from pathlib import Path
 
 from optixc.enums_program import Result
 from optixc.errors import OptixError
+from optixc.stack_usage import read_frames
 
 MIN_CLANG = 16
 MIN_GCC = 12
@@ -140,16 +141,21 @@ def identify(path: str, memory: Path | None = None) -> Compiler | None:
     return Compiler(path, real, status.st_size, status.st_mtime_ns, kind, tuple(version)) if kind else None
 
 
-def compile_shared(text: str, output: Path, compiler: Compiler, build: Build) -> None:
-    """Compiles C++ text to a shared object; `output` appears whole or not at all. With `debug` the text stays beside it."""
+def compile_shared(text: str, output: Path, compiler: Compiler, build: Build) -> dict[str, int]:
+    """Compiles C++ text to a shared object and gives the bytes of each function's frame; `output` appears whole or not at all.
+
+    With `debug` the text stays beside it.
+    """
     with tempfile.TemporaryDirectory(prefix="optixc-", dir=output.parent) as folder:
         source = output.with_suffix(".cpp") if build.debug else Path(folder) / "pipeline.cpp"
         source.write_text(text)
         made = Path(folder) / "pipeline.so"
         # Unknown pragmas and attributes of one compiler must not speak to users of the other, so warnings are off here;
         # that generated code is clean under -Wall -Wextra is tested.
-        _run(compiler, [*build.flags(), "-w", "-shared", str(source), "-o", str(made), "-lm"])
+        _run(compiler, [*build.flags(), "-w", "-fstack-usage", "-shared", str(source), "-o", str(made), "-lm"])
+        frames = read_frames(made.parent)
         os.replace(made, output)
+        return frames
 
 
 def compile_assembly(text: str, compiler: Compiler, build: Build) -> str:

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cstdio>
 #include <cstring>
+#include <pthread.h>
 
 namespace oxrt {
 
@@ -18,6 +19,24 @@ constexpr std::uint32_t largestTile = 1024;
 constexpr std::uint32_t smallestTile = 256;
 constexpr std::uint64_t wantedTilesPerThread = 8;
 constexpr std::uint64_t largestChunk = 16;
+
+// Left for Embree's traversal, its callbacks and the programs that run below the last trace.
+constexpr std::size_t stackReserve = std::size_t(512) << 10;
+
+// The lowest address that a frame of this thread may have; the first call of a thread asks the system.
+const void* findStackLimit()
+{
+    thread_local const void* limit = nullptr;
+    if (limit) return limit;
+    pthread_attr_t attributes;
+    if (pthread_getattr_np(pthread_self(), &attributes) != 0) return nullptr;
+    void* lowest = nullptr;
+    std::size_t size = 0;
+    pthread_attr_getstack(&attributes, &lowest, &size);
+    pthread_attr_destroy(&attributes);
+    limit = static_cast<const char*>(lowest) + std::min(stackReserve, size / 2);
+    return limit;
+}
 
 std::uint32_t divideUp(std::uint32_t value, std::uint32_t divisor)
 {
@@ -112,6 +131,7 @@ void Launch::run()
     thread.launch = &view;
     thread.params = view.params;
     thread.runtime = this;
+    thread.stackLimit = findStackLimit();
 
     const auto cancelState = std::atomic_ref(cancelWord);
     std::uint64_t end;

@@ -122,7 +122,7 @@ OxrtLaunch Pipeline::describeLaunch(const OxrtShaderBindingTable& sbt, LaunchSiz
     description.callableRecords = static_cast<const std::uint8_t*>(sbt.callableRecords);
     description.callableStride = sbt.callableStride;
     description.callableCount = sbt.callableCount;
-    description.maxTraceDepth = binary->maxTraceDepth;
+    description.maxTraceDepth = stackTraceDepth;
     return description;
 }
 
@@ -250,6 +250,12 @@ OxrtLaunchReport Pipeline::lastReport() const
     return failedReport;
 }
 
+void Pipeline::setStackTraceDepth(std::uint32_t depth)
+{
+    const std::lock_guard lock(mutex);
+    stackTraceDepth = depth;
+}
+
 void Pipeline::progress(std::uint64_t& done, std::uint64_t& total) const
 {
     done = launch->indicesDone();
@@ -285,6 +291,11 @@ OxrtResult oxrtPipelineGetInfo(OxrtPipeline pipeline, OxrtPipelineInfo* info)
         if (!info) fail(OXRT_ERROR_INVALID_VALUE, "the result pointer `info` is NULL");
         *info = self->info();
     });
+}
+
+OxrtResult oxrtPipelineSetStackTraceDepth(OxrtPipeline pipeline, uint32_t depth)
+{
+    return guard([&] { find(pipeline)->setStackTraceDepth(depth); });
 }
 
 OxrtResult oxrtPipelineFindProgram(OxrtPipeline pipeline, const char* name, int32_t* program)

@@ -44,6 +44,7 @@ public:
     std::unique_ptr<Launch> makeLaunch(const void* params, std::size_t paramsSize, const OxrtShaderBindingTable* sbt, LaunchSize size) const;
 
     OxrtLaunchReport lastReport() const;
+    void setStackTraceDepth(std::uint32_t depth);
     void progress(std::uint64_t& done, std::uint64_t& total) const;
 
     const std::shared_ptr<Context> context;
@@ -78,6 +79,7 @@ private:
     std::uint64_t ticket = 0; // of the launch between its begin and the wait that saw its end, else 0
     bool begun = false;       // it waits for oxrtLaunchWait
     OxrtLaunchReport failedReport = {};
+    std::uint32_t stackTraceDepth = UINT32_MAX; // traces that may nest on the configured stack
 };
 
 // Checks bases, strides and counts, and in validation mode every header. Throws Failure naming the record.

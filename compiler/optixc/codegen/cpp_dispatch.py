@@ -7,7 +7,8 @@ from __future__ import annotations
 
 from optixc.codegen.cpp_signatures import Signatures, used_parameters
 from optixc.codegen.cpp_types import TypeNames
-from optixc.codegen.program_classes import ProgramClass, payload_of
+from optixc.codegen.needs import EXCEPTION_FLAG_STACK_OVERFLOW
+from optixc.codegen.program_classes import ProgramClass, callables_nest, payload_of
 from optixc.codegen.writer import Writer
 from optixc.ir.nodes import Function, ParameterRole, Pipeline, is_reference_type
 from optixc.ir.programs import ProgramKind
@@ -37,6 +38,7 @@ class Dispatch:
         self._types = types
         self._signatures = signatures
         self._numbers = {program.name: number for number, program in enumerate(pipeline.programs)}
+        self._callables_nest = callables_nest(pipeline)
 
     # ---- payload classes -----------------------------------------------------------------------------------------------------
 
@@ -62,9 +64,11 @@ class Dispatch:
             ("hasAnyHit", bool(programs.anyhit)),
             ("hasIntersection", bool(programs.intersection)),
             ("hasMiss", bool(programs.miss)),
-            ("mayThrow", programs.may_throw or (programs.depth_throws and programs.counts_depth)),
+            ("mayThrow", programs.may_throw or ((programs.depth_throws or programs.overflow_throws) and programs.counts_depth)),
             ("countsDepth", programs.counts_depth),
             ("depthThrows", programs.counts_depth and programs.depth_throws),
+            ("checksStack", programs.checks_stack),
+            ("overflowThrows", programs.checks_stack and programs.overflow_throws),
             ("usesTime", options.uses_motion_blur),
             ("isValidated", options.validation),
         ]
@@ -135,23 +139,39 @@ class Dispatch:
         for position, type_ in enumerate(signature.arguments):
             text = self._types.name(type_)
             arguments.append(f"const {text}& a{position}" if is_reference_type(type_) else f"{text} a{position}")
+        if self._tells_place:
+            arguments.append("oxrt::Place place")
         return f"{self._types.name(signature.result)} {name}({', '.join(arguments)})"
 
+    @property
+    def _tells_place(self) -> bool:
+        """Whether a callable's dispatcher may have to tell where the call stands."""
+        return self._pipeline.options.validation or self._callables_nest
+
     def declare_callable(self, signature: CallableSignature) -> None:
-        self._writer.line(f"{self.callable_head(signature)};")
+        head = self.callable_head(signature)
+        self._writer.line(f"{head.removesuffix(')')} = oxrt::Place::current());" if self._tells_place else f"{head};")
 
     def define_callable(self, signature: CallableSignature) -> None:
         """Runs the callable of record `index`; without one the result is zero, and a fault in validation."""
         slot = 0 if signature.is_direct else 1
         result = "" if isinstance(signature.result, Void) else " {}"
         with self._writer.block(self.callable_head(signature)):
-            self._writer.line(f"const OxrtRecordHeader* record = oxrt::findCallable(thread, index, {slot});")
+            if self._callables_nest:
+                throws = "true" if self._pipeline.options.exception_flags & EXCEPTION_FLAG_STACK_OVERFLOW else "false"
+                self._writer.line(f"if (!oxrt::enterCallable<{throws}>(thread, place)) return{result};")
+            place = ", place" if self._tells_place else ""
+            self._writer.line(f"const OxrtRecordHeader* record = oxrt::findCallable(thread, index, {slot}{place});")
             with self._writer.block(f"switch (record ? record->programs[{slot}] : OXRT_NO_PROGRAM)"):
                 for program in callables_with(self._pipeline, signature):
                     call = f"{self._signatures.function(program.name)}({', '.join(self._callable_arguments(program))})"
                     run = f"{call}; return;" if isinstance(signature.result, Void) else f"return {call};"
                     self._writer.line(f"case {self.number(program)}: {run}")
-                self._writer.line(f"default: return{result};")
+                if self._pipeline.options.validation:
+                    self._writer.line(f"case OXRT_NO_PROGRAM: return{result};")
+                    self._writer.line(f"default: oxrt::callableMismatch(thread, place); return{result};")
+                else:
+                    self._writer.line(f"default: return{result};")
         self._writer.line()
 
     def _callable_arguments(self, program: Function) -> list[str]:

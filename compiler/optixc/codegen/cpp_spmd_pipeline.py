@@ -16,11 +16,11 @@ from optixc.codegen.cpp_spmd import LaneFunction
 from optixc.codegen.cpp_spmd_clones import Clones, Key
 from optixc.codegen.cpp_spmd_expr import PAYLOAD_GETTER, PAYLOAD_SETTER
 from optixc.codegen.cpp_spmd_types import WideTypes
-from optixc.codegen.needs import options_of
-from optixc.codegen.program_classes import ProgramClass, known_flags, payload_of, reachable_functions, traces_of
+from optixc.codegen.needs import EXCEPTION_FLAG_STACK_OVERFLOW, options_of
+from optixc.codegen.program_classes import ProgramClass, callables_nest, known_flags, payload_of, reachable_functions, traces_of
 from optixc.ir.intrinsic_rows import INTRINSICS
 from optixc.ir.intrinsics import State
-from optixc.ir.nodes import CallCallable, CallIntrinsic, Function, IntrinsicCall, ParameterRole, Pipeline, Trace, is_reference_type
+from optixc.ir.nodes import CallCallable, CallIntrinsic, Function, IntrinsicCall, ParameterRole, Pipeline, Trace
 from optixc.ir.programs import ProgramKind
 from optixc.ir.types import Struct, Void
 from optixc.ir.walk import expressions, statements
@@ -197,7 +197,7 @@ class SpmdFile(PipelineFile):
         arguments = ["Lanes& thread", "Mask mask", "Wide<uint32_t> index"]
         for position, type_ in enumerate(signature.arguments):
             text = self._wide.name(type_, True)
-            arguments.append(f"{text}& a{position}" if is_reference_type(type_) else f"const {text}& a{position}")
+            arguments.append(f"const {text}& a{position}")
         return f"{self._wide.name(signature.result, True)} {name}_lanes({', '.join(arguments)})"
 
     def _define_callable(self, signature: CallableSignature) -> None:
@@ -208,6 +208,8 @@ class SpmdFile(PipelineFile):
             if not is_void:
                 result = self._types.name(signature.result)
                 self._writer.line(f"{self._wide.name(signature.result, True)} result = oxrt::spread<LANES>({result}{{}});")
+            if callables_nest(self._pipeline):
+                self._guard_stack(is_void)
             self._writer.line("oxrt::RecordLanes<LANES> records;")
             self._writer.line(f"const Mask found = oxrt::findCallables(thread, records, mask, index, {slot});")
             with self._writer.block("if (oxrt::none(found))"):
@@ -222,6 +224,15 @@ class SpmdFile(PipelineFile):
             if not is_void:
                 self._writer.line("return result;")
         self._writer.line()
+
+    def _guard_stack(self, is_void: bool) -> None:
+        """Callables may call each other without end: a full stack ends the lanes, by an exception where the pipeline asks for it."""
+        throws = bool(self._pipeline.options.exception_flags & EXCEPTION_FLAG_STACK_OVERFLOW)
+        with self._writer.block("if (oxrt::isStackFull(*thread.thread))"):
+            self._writer.line(f"oxrt::overflowStack<{'true' if throws else 'false'}>(thread.atLane(oxrt::firstLane(mask)), oxrt::Place::current());")
+            if throws:
+                self._writer.line("oxrt::takeExceptions(thread, mask);")
+            self._writer.line("return;" if is_void else "return result;")
 
     def _callable_call(self, program: Function) -> str:
         clone = self._clones.analysis.program(program)
@@ -280,8 +291,6 @@ def _present(programs: ProgramClass) -> list[tuple[ProgramKind, tuple[Function, 
         (ProgramKind.MISS, programs.miss),
     )
     return [(kind, functions) for kind, functions in kinds if functions]
-
-
 
 
 def _filters(flags: int | None, has_anyhit: bool) -> bool:

@@ -69,7 +69,7 @@ def options_of(pipeline: Pipeline) -> Options:
     return Options(
         is_checked=options.debug or options.validation,
         user_exceptions=throwing,
-        traces_throw=throwing or bool(options.exception_flags & EXCEPTION_FLAG_TRACE_DEPTH),
+        traces_throw=throwing or bool(options.exception_flags & (EXCEPTION_FLAG_TRACE_DEPTH | EXCEPTION_FLAG_STACK_OVERFLOW)),
     )
 
 

@@ -10,9 +10,21 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 from optixc.codegen.cpp_types import payload_words, word_count
-from optixc.codegen.needs import EXCEPTION_FLAG_TRACE_DEPTH, Needs
-from optixc.ir.nodes import Binary, BinaryOp, CallIntrinsic, Expr, Function, IntrinsicCall, Literal, ParameterRole, Pipeline, Trace
-from optixc.ir.programs import ProgramKind
+from optixc.codegen.needs import EXCEPTION_FLAG_STACK_OVERFLOW, EXCEPTION_FLAG_TRACE_DEPTH, Needs
+from optixc.ir.nodes import (
+    Binary,
+    BinaryOp,
+    CallCallable,
+    CallIntrinsic,
+    Expr,
+    Function,
+    IntrinsicCall,
+    Literal,
+    ParameterRole,
+    Pipeline,
+    Trace,
+)
+from optixc.ir.programs import CALLABLES, ProgramKind
 from optixc.ir.types import Struct
 from optixc.ir.walk import called_helpers, expressions, statements
 
@@ -32,6 +44,8 @@ class ProgramClass:
     may_throw: bool
     counts_depth: bool
     depth_throws: bool
+    checks_stack: bool
+    overflow_throws: bool
 
 
 def traces_of(pipeline: Pipeline) -> Iterator[tuple[Function, Trace]]:
@@ -46,11 +60,12 @@ def program_classes(pipeline: Pipeline, needs: dict[str, Needs]) -> dict[Struct 
     """The class of every payload that is traced, in order of first use."""
     payloads = list(dict.fromkeys(trace.payload_type for _, trace in traces_of(pipeline)))
     depth = trace_depth(pipeline)
-    counts = depth is None or depth > pipeline.options.max_trace_depth
-    return {payload: _program_class(pipeline, needs, payload, counts) for payload in payloads}
+    checks_stack = depth is None or bool(pipeline.options.exception_flags & EXCEPTION_FLAG_STACK_OVERFLOW)
+    counts = checks_stack or depth is None or depth > pipeline.options.max_trace_depth
+    return {payload: _program_class(pipeline, needs, payload, counts, checks_stack) for payload in payloads}
 
 
-def _program_class(pipeline: Pipeline, needs: dict[str, Needs], payload: Struct | None, counts: bool) -> ProgramClass:
+def _program_class(pipeline: Pipeline, needs: dict[str, Needs], payload: Struct | None, counts: bool, checks_stack: bool) -> ProgramClass:
     def of_kind(kind: ProgramKind) -> tuple[Function, ...]:
         return tuple(p for p in pipeline.programs if p.kind is kind and accepts(pipeline, p, payload))
 
@@ -66,7 +81,17 @@ def _program_class(pipeline: Pipeline, needs: dict[str, Needs], payload: Struct 
         may_throw=any(needs[program.name].throws for program in programs),
         counts_depth=counts,
         depth_throws=bool(pipeline.options.exception_flags & EXCEPTION_FLAG_TRACE_DEPTH),
+        checks_stack=checks_stack,
+        overflow_throws=bool(pipeline.options.exception_flags & EXCEPTION_FLAG_STACK_OVERFLOW),
     )
+
+
+def callables_nest(pipeline: Pipeline) -> bool:
+    """Whether callables can run inside of callables, as deep as they like."""
+    callables = [program for program in pipeline.programs if program.kind in CALLABLES]
+    reached = {id(function): function for program in callables for function in reachable_functions(pipeline, program)}
+    found = (statement for function in reached.values() for statement in statements(function.body))
+    return any(isinstance(one, CallCallable) or (isinstance(one, Trace) and one.name != "traverse") for one in found)
 
 
 def payload_of(function: Function) -> Struct | None:

@@ -10,6 +10,7 @@ from typing import Any
 from optixc.enums_program import ProgramGroupKind
 from optixc.errors import InvalidValueError
 from optixc.host import structs
+from optixc.host.stack_sizes import StackSizes, sizes_of
 
 _SLOT_PREFIXES = {
     "raygen": "__raygen__",
@@ -39,6 +40,7 @@ class Program:
     name: str
     record: str | None
     record_name: str | None
+    stack: int = 0
 
 
 class Module(Mapping[str, Program]):
@@ -47,7 +49,7 @@ class Module(Mapping[str, Program]):
     def __init__(self, unit: Any, programs: list[dict[str, Any]], bound_values: Mapping[str, Any] | None = None) -> None:
         self.unit = unit
         self.bound_values = dict(bound_values or {})
-        self._programs = {one["name"]: Program(self, one["name"], one["record"], one["record_name"]) for one in programs}
+        self._programs = {one["name"]: Program(self, one["name"], one["record"], one["record_name"], one["stack"]) for one in programs}
 
     def __getitem__(self, name: str) -> Program:
         found = self._programs.get(name)
@@ -81,12 +83,27 @@ class ProgramGroup:
             if not program.name.startswith(_SLOT_PREFIXES[slot]):
                 raise InvalidValueError(f"{slot}= takes a program whose name begins with {_SLOT_PREFIXES[slot]}, not {program.name}")
         self.programs = {slot: program for slot, program in slots.items() if program is not None}
+        self._pipelines: weakref.WeakSet[Any] = weakref.WeakSet()
         if not self.programs and self.kind not in _MAY_BE_EMPTY:
             raise InvalidValueError(f"a group of kind {self.kind.name} needs a program")
 
     def record(self, data: Any = None) -> Record:
         """A record that runs this group, with `data`, an instance of the struct that its programs take."""
         return Record(self, data)
+
+    def get_stack_size(self, pipeline: Any = None) -> StackSizes:
+        """Bytes of the programs' frames in `pipeline`, else the largest of all pipelines with this group; before that an estimate."""
+        if pipeline is not None and pipeline not in self._pipelines:
+            raise InvalidValueError(f"{self!r} is not part of this pipeline; give one that was created with the group")
+        pipelines = [pipeline] if pipeline is not None else list(self._pipelines)
+        slots = {
+            slot: max((one.frame_of(program.name) for one in pipelines), default=program.stack) for slot, program in self.programs.items()
+        }
+        return sizes_of(slots)
+
+    def linked_into(self, pipeline: Any) -> None:
+        """The group became part of a pipeline."""
+        self._pipelines.add(pipeline)
 
     def check_data(self, data: Any) -> None:
         """Raises unless every program of the group can read `data`."""

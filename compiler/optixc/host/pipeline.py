@@ -13,10 +13,13 @@ from optixc.host import bound_values, library, structs
 from optixc.host.context import Context
 from optixc.host.groups import ProgramGroup, Record, check_layout
 from optixc.host.sbt import ShaderBindingTable
+from optixc.host.stack_sizes import StackSizes, nesting_that_fits
 from optixc.options import PipelineCompileOptions
 
 STEP_MS = 50
 FAULT_BOUND_VALUE = 3
+MAX_STACK_SIZE = 1 << 24
+MAX_GRAPH_DEPTH, SINGLE_LEVEL_DEPTH = 31, 2
 _C_SLOTS = {"direct_callable": "directCallable", "continuation_callable": "continuationCallable"}
 
 
@@ -36,6 +39,8 @@ class PipelineReport:
     traces: tuple[str, ...] = ()
     ignored: tuple[str, ...] = ()
     bound_values: tuple[dict[str, Any], ...] = ()
+    stack: dict[str, int] = field(default_factory=dict)
+    is_any_graph: bool = True
 
     def __str__(self) -> str:
         source = "from the cache" if self.cache_hit else f"compiled in {self.compile_seconds:.2f} s"
@@ -45,6 +50,7 @@ class PipelineReport:
             f"launch parameters {self.params_size} bytes, trace depth {self.max_trace_depth}",
             *self.features.values(),
             *(f"trace {one}" for one in self.traces),
+            *(f"stack of {name}: {size} bytes" for name, size in self.stack.items()),
             *(f"bound {one['name']} = {one['value']} ({one['reads']} reads)" for one in self.bound_values),
             *(f"ignored on a CPU: {one}" for one in self.ignored),
         ]
@@ -90,6 +96,8 @@ class Pipeline:
         self._report = PipelineReport(
             lanes=int(info.lanes), params_size=int(info.paramsSize), max_trace_depth=int(info.maxTraceDepth), library=path, **report
         )
+        for group in self._groups:
+            group.linked_into(self)
 
     def launch(self, params: Any, sbt: ShaderBindingTable, width: int, height: int = 1, depth: int = 1) -> None:
         """Runs width x height x depth launch indices and returns when all are done; Ctrl-C stops it within a second."""
@@ -136,6 +144,41 @@ class Pipeline:
     def report(self) -> PipelineReport:
         """What was compiled in and why, compile seconds and cache hit, trace forms."""
         return self._report
+
+    def frame_of(self, program: str) -> int:
+        """Bytes of stack that a call of a program takes."""
+        return self._report.stack.get(program, 0)
+
+    def set_stack_size(
+        self,
+        direct_callable_stack_size_from_traversal: int,
+        direct_callable_stack_size_from_state: int,
+        continuation_stack_size: int,
+        max_traversable_graph_depth: int = 2,
+    ) -> None:
+        """OptiX's optixPipelineSetStackSize. Nobody needs to call it: the stacks of host threads hold what `max_trace_depth` allows.
+
+        In a pipeline with ExceptionFlags.STACK_OVERFLOW, traces that nest deeper than `continuation_stack_size` is enough for, by the
+        formula of `util_compute_stack_sizes`, are stack overflows. Sizes of direct callables are checked and have no effect.
+        """
+        named = {
+            "direct_callable_stack_size_from_traversal": direct_callable_stack_size_from_traversal,
+            "direct_callable_stack_size_from_state": direct_callable_stack_size_from_state,
+            "continuation_stack_size": continuation_stack_size,
+        }
+        for name, value in named.items():
+            if not isinstance(value, int) or isinstance(value, bool) or not 0 <= value <= MAX_STACK_SIZE:
+                raise InvalidValueError(f"{name} must be 0 to {MAX_STACK_SIZE} bytes, not {value!r}")
+        deepest = MAX_GRAPH_DEPTH if self._report.is_any_graph else SINGLE_LEVEL_DEPTH
+        if max_traversable_graph_depth not in range(1, deepest + 1):
+            why = "" if self._report.is_any_graph else "; traversable_graph_flags of the pipeline allow a single level only"
+            raise InvalidValueError(f"max_traversable_graph_depth must be 1 to {deepest}, not {max_traversable_graph_depth!r}{why}")
+        total = StackSizes()
+        for group in self._groups:
+            total.include(group.get_stack_size(self))
+        if self._pipeline is None:
+            self._refuse_dead()
+        library.check(self._lib.oxrtPipelineSetStackTraceDepth(self._pipeline, nesting_that_fits(total, continuation_stack_size)))
 
     def check_record(self, record: Record) -> None:
         """Raises unless the record's data is what its programs in this pipeline read."""

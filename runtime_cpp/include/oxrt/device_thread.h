@@ -157,6 +157,10 @@ OXRT_INLINE const OxrtRecordHeader* findCallable(OxrtThread& thread, uint32_t in
     return nullptr;
 }
 
+__attribute__((noinline, cold, unused)) static void callableMismatch(OxrtThread& thread, Place place) {
+    fault(thread, OXRT_FAULT_CALLABLE_ARGUMENTS, "the callable takes other arguments or gives another result than the call", place);
+}
+
 __attribute__((noinline, cold, unused)) static void payloadMismatch(OxrtThread& thread) {
     fault(thread, OXRT_FAULT_PAYLOAD_MISMATCH, "the record's program takes another payload than the trace carries", {nullptr, 0});
 }
@@ -177,6 +181,9 @@ template <class F> OXRT_INLINE void forEachIndex(OxrtThread& thread, const OxrtT
 
 /* ---- exceptions ----------------------------------------------------------------------------------------------------------------- */
 
+/* Whether the thread's stack has no room for another nested trace or callable. */
+OXRT_INLINE bool isStackFull(const OxrtThread& thread) { return __builtin_frame_address(0) < thread.stackLimit; }
+
 /* Ends the launch index: the caller returns, and so do all above it. */
 template <class... Detail>
 OXRT_INLINE void throwException(OxrtThread& thread, const char* line, int32_t code, Detail... details) {
@@ -196,6 +203,22 @@ OXRT_INLINE uint32_t getExceptionDetail_4(const OxrtThread& thread) { return thr
 OXRT_INLINE uint32_t getExceptionDetail_5(const OxrtThread& thread) { return thread.exceptionDetails[5]; }
 OXRT_INLINE uint32_t getExceptionDetail_6(const OxrtThread& thread) { return thread.exceptionDetails[6]; }
 OXRT_INLINE uint32_t getExceptionDetail_7(const OxrtThread& thread) { return thread.exceptionDetails[7]; }
+
+/* A stack that is used up is an exception where the pipeline asks for it, else a fault. */
+template <bool THROWS> __attribute__((noinline, cold)) void overflowStack(OxrtThread& thread, Place place) {
+    if constexpr (THROWS)
+        throwException(thread, nullptr, OXRT_FAULT_STACK_OVERFLOW);
+    else
+        fault(thread, OXRT_FAULT_STACK_OVERFLOW, "the stack is used up by nested traces and callables", place);
+}
+
+/* Guards a callable that callables call: false, with the overflow told, where the stack is full. */
+template <bool THROWS> OXRT_INLINE bool enterCallable(OxrtThread& thread, Place place = Place::current()) {
+    if (__builtin_expect(!isStackFull(thread), 1))
+        return true;
+    overflowStack<THROWS>(thread, place);
+    return false;
+}
 
 /* The number of the exception program to run for the pending exception; it is not pending any more. */
 OXRT_INLINE int32_t takeException(OxrtThread& thread) {

@@ -142,6 +142,11 @@ template <class Programs> OXRT_INLINE bool enterTrace(OxrtThread& thread, Place 
                 fault(thread, OXRT_FAULT_TRACE_DEPTH, "traces nest deeper than max_trace_depth", place);
             return false;
         }
+        if constexpr (Programs::checksStack)
+            if (__builtin_expect(thread.traceDepth >= thread.launch->maxTraceDepth || isStackFull(thread), 0)) {
+                overflowStack<Programs::overflowThrows>(thread, place);
+                return false;
+            }
         ++thread.traceDepth;
     }
     return true;

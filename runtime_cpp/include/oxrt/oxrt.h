@@ -198,6 +198,8 @@ typedef struct OxrtPipelineInfo {
 } OxrtPipelineInfo;
 
 OXRT_API OxrtResult oxrtPipelineGetInfo(OxrtPipeline pipeline, OxrtPipelineInfo* info);
+/* How many traces may nest on the stack that is configured; deeper ones are stack overflows in pipelines compiled to notice them. */
+OXRT_API OxrtResult oxrtPipelineSetStackTraceDepth(OxrtPipeline pipeline, uint32_t depth);
 /* The number of the program with this full name, -1 if there is none. */
 OXRT_API OxrtResult oxrtPipelineFindProgram(OxrtPipeline pipeline, const char* name, int32_t* program);
 

@@ -172,7 +172,7 @@ typedef struct OxrtLaunch {
     uint32_t textureCount;
     const OxrtServices* services;
     uint32_t* cancel; /* non-zero: stop soon; read relaxed, polled by loops without a provable bound and between blocks */
-    uint32_t maxTraceDepth;
+    uint32_t maxTraceDepth; /* traces that may nest on the configured stack; the pipeline's own limit is compiled in */
     uint32_t validation;
 } OxrtLaunch;
 
@@ -187,6 +187,7 @@ struct OxrtThread {
     uint32_t exceptionDetails[8];
     const char* exceptionLine;
     void* runtime;        /* the runtime's own */
+    const void* stackLimit; /* frames below this address leave too little of the thread's stack */
 };
 
 /* A box of launch indices: begin inclusive, end exclusive. */
