@@ -201,5 +201,3 @@ class LaneCalls:
         is_place = is_reference_type(argument.type) and isinstance(argument, LocalRef | FieldRef | IndexRef | ElementRef)
         is_loaded = isinstance(argument, ElementRef) and self._expressions.lanes.varies(argument)
         return self._expressions.place(argument) if is_place and not is_loaded else self._expressions.text(argument)
-
-

@@ -146,8 +146,6 @@ class Clones:
         return text if is_small or is_assigned else f"const {text}&"
 
 
-
-
 def _statement_acts(statement: object) -> bool:
     match statement:
         case Trace() | CallCallable() | Print():

@@ -36,7 +36,8 @@ template <Compare C, class V> OXRT_INLINE auto compareVectors(V a, V b) {
 template <Compare C> OXRT_INLINE NativeInt8 compareNative(NativeFloat8 a, NativeFloat8 b) { return NativeInt8(compareVectors<C>(a, b)); }
 template <Compare C> OXRT_INLINE NativeInt8 compareNative(NativeInt8 a, NativeInt8 b) { return NativeInt8(compareVectors<C>(a, b)); }
 template <Compare C> OXRT_INLINE NativeInt8 compareNative(NativeUint8 a, NativeUint8 b) { return NativeInt8(compareVectors<C>(a, b)); }
-template <Compare C> OXRT_INLINE NativeLong4 compareNative(NativeDouble4 a, NativeDouble4 b) { return NativeLong4(compareVectors<C>(a, b)); }
+template <Compare C>
+OXRT_INLINE NativeLong4 compareNative(NativeDouble4 a, NativeDouble4 b) { return NativeLong4(compareVectors<C>(a, b)); }
 template <Compare C> OXRT_INLINE NativeLong4 compareNative(NativeLong4 a, NativeLong4 b) { return NativeLong4(compareVectors<C>(a, b)); }
 template <Compare C> OXRT_INLINE NativeLong4 compareNative(NativeUlong4 a, NativeUlong4 b) { return NativeLong4(compareVectors<C>(a, b)); }
 

@@ -29,10 +29,12 @@ template <> struct NativeVector<uint64_t, 16> { using Type = NativeUlong8; };
 /* ---- comparisons: a mask bit per lane ----------------------------------------------------------------------------------------- */
 
 constexpr int floatPredicate(Compare c) {
-    return c == Compare::EQUAL ? 0 : c == Compare::NOT_EQUAL ? 4 : c == Compare::LESS ? 17 : c == Compare::LESS_EQUAL ? 18 : c == Compare::GREATER ? 30 : 29;
+    return c == Compare::EQUAL ? 0 : c == Compare::NOT_EQUAL ? 4 : c == Compare::LESS ? 17 : c == Compare::LESS_EQUAL ? 18
+        : c == Compare::GREATER ? 30 : 29;
 }
 constexpr int integerPredicate(Compare c) {
-    return c == Compare::EQUAL ? 0 : c == Compare::NOT_EQUAL ? 4 : c == Compare::LESS ? 1 : c == Compare::LESS_EQUAL ? 2 : c == Compare::GREATER ? 6 : 5;
+    return c == Compare::EQUAL ? 0 : c == Compare::NOT_EQUAL ? 4 : c == Compare::LESS ? 1 : c == Compare::LESS_EQUAL ? 2
+        : c == Compare::GREATER ? 6 : 5;
 }
 enum { CURRENT_ROUNDING = 4 };
 
@@ -150,7 +152,8 @@ OXRT_INLINE NativeDouble8 gatherAddressNative(const double*, NativeUlong8 addres
     return __builtin_ia32_gatherdiv8df(NativeDouble8{}, static_cast<const double*>(nullptr), NativeLongLong8(address), m, 1);
 }
 OXRT_INLINE NativeLong8 gatherAddressNative(const int64_t*, NativeUlong8 address, uint8_t m) {
-    return NativeLong8(__builtin_ia32_gatherdiv8di(NativeLongLong8{}, static_cast<const long long*>(nullptr), NativeLongLong8(address), m, 1));
+    return NativeLong8(__builtin_ia32_gatherdiv8di(NativeLongLong8{}, static_cast<const long long*>(nullptr), NativeLongLong8(address),
+                                                   m, 1));
 }
 
 }  // namespace OXRT_ISA

@@ -186,7 +186,8 @@ template <int W> Lanes<bool, W> meetingBox(const CandidateLanes<W>& ray) {
 
 /* Runs the intersection programs of one custom primitive for the lanes to which Embree offers it. */
 template <class Programs, int W>
-void runIntersections(const int* valid, RTCRayQueryContext* context, void* packetRay, typename CandidateLanes<W>::PacketHit* hit, uint32_t geometry,
+void runIntersections(const int* valid, RTCRayQueryContext* context, void* packetRay, typename CandidateLanes<W>::PacketHit* hit,
+                      uint32_t geometry,
                       uint32_t primitive) {
     using Scalar = typename Programs::Scalar;
     CandidateLanes<W>& ray = *reinterpret_cast<QueryLanes<W>*>(context)->candidates;

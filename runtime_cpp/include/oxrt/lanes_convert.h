@@ -14,7 +14,8 @@ template <class T, int W> OXRT_INLINE Lanes<T, W> loadLanes(const T (&values)[W]
     __builtin_memcpy(&result, values, sizeof(values));
     return result;
 }
-template <class T, int W> OXRT_INLINE void storeLanes(T (&values)[W], Lanes<T, W> lanes) { __builtin_memcpy(values, &lanes, sizeof(values)); }
+template <class T, int W>
+OXRT_INLINE void storeLanes(T (&values)[W], Lanes<T, W> lanes) { __builtin_memcpy(values, &lanes, sizeof(values)); }
 
 /* 0, 1, 2 ... */
 template <int W> OXRT_INLINE Lanes<uint32_t, W> laneIndex() {

@@ -112,6 +112,17 @@ OXRT_INLINE void throwException(LanesThread<W>& thread, Lanes<bool, W> mask, con
     ((thread.exceptionDetails[next] = select(mask, Lanes<uint32_t, W>(details), thread.exceptionDetails[next]), ++next), ...);
 }
 
+/* Moves the exception that a scalar program threw to its lanes. */
+template <int W> void takeExceptions(LanesThread<W>& thread, Lanes<bool, W> mask) {
+    OxrtThread& scalar = *thread.thread;
+    thread.thrown |= mask;
+    thread.exceptionCode = select(mask, scalar.exceptionCode, thread.exceptionCode);
+    for (int i = 0; i < 8; ++i)
+        thread.exceptionDetails[i] = select(mask, scalar.exceptionDetails[i], thread.exceptionDetails[i]);
+    thread.exceptionLine = scalar.exceptionLine;
+    scalar.exceptionPending = 0;
+}
+
 /* Makes the exception of one lane that of the scalar thread. */
 template <int W> OXRT_INLINE OxrtThread& throwingLane(const LanesThread<W>& thread, int lane) {
     OxrtThread& scalar = thread.atLane(lane);

@@ -135,7 +135,8 @@ template <class I> OXRT_INLINE auto longIndex(I index) {
 template <int W, class Shape, class... I> OXRT_INLINE Lanes<uint64_t, W> longOffset(const Shape& shape, I... indices) {
     Lanes<uint64_t, W> result = uint64_t(0);
     int axis = 0;
-    ((result = axis == 0 ? Lanes<uint64_t, W>(longIndex(indices)) : result * Lanes<uint64_t, W>(shape[axis]) + longIndex(indices), ++axis), ...);
+    ((result = axis == 0 ? Lanes<uint64_t, W>(longIndex(indices)) : result * Lanes<uint64_t, W>(shape[axis]) + longIndex(indices),
+      ++axis), ...);
     return result;
 }
 
@@ -162,7 +163,8 @@ template <int W, class F, class T, int RANK, class... I> OXRT_INLINE auto withPl
         if (__builtin_expect(words < uint64_t(1) << 31, 1)) {
             Lanes<int32_t, W> index = 0;
             int axis = 0;
-            ((index = axis == 0 ? Lanes<int32_t, W>(wordIndex(indices)) : index * int32_t(array.shape[axis]) + wordIndex(indices), ++axis), ...);
+            ((index = axis == 0 ? Lanes<int32_t, W>(wordIndex(indices)) : index * int32_t(array.shape[axis]) + wordIndex(indices),
+              ++axis), ...);
             return f(WordPlaces<W>{reinterpret_cast<const char*>(array.data), index * int32_t(sizeof(T) / 4)});
         }
     }

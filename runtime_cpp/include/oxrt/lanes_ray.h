@@ -43,19 +43,23 @@ template <int W> OXRT_INLINE bool isCancelled(const LanesThread<W>& thread) { re
 template <int W> struct Packet;
 template <> struct Packet<8> {
     using RayHit = RTCRayHit8;
-    static OXRT_INLINE void intersect(const OxrtServices& s, const int* valid, void* scene, RayHit& packet, RTCIntersectArguments* arguments) {
+    static OXRT_INLINE void intersect(const OxrtServices& s, const int* valid, void* scene, RayHit& packet,
+                                      RTCIntersectArguments* arguments) {
         s.intersect8(valid, scene, &packet, arguments);
     }
-    static OXRT_INLINE void occluded(const OxrtServices& s, const int* valid, void* scene, RayHit& packet, RTCOccludedArguments* arguments) {
+    static OXRT_INLINE void occluded(const OxrtServices& s, const int* valid, void* scene, RayHit& packet,
+                                     RTCOccludedArguments* arguments) {
         s.occluded8(valid, scene, &packet.ray, arguments);
     }
 };
 template <> struct Packet<16> {
     using RayHit = RTCRayHit16;
-    static OXRT_INLINE void intersect(const OxrtServices& s, const int* valid, void* scene, RayHit& packet, RTCIntersectArguments* arguments) {
+    static OXRT_INLINE void intersect(const OxrtServices& s, const int* valid, void* scene, RayHit& packet,
+                                      RTCIntersectArguments* arguments) {
         s.intersect16(valid, scene, &packet, arguments);
     }
-    static OXRT_INLINE void occluded(const OxrtServices& s, const int* valid, void* scene, RayHit& packet, RTCOccludedArguments* arguments) {
+    static OXRT_INLINE void occluded(const OxrtServices& s, const int* valid, void* scene, RayHit& packet,
+                                     RTCOccludedArguments* arguments) {
         s.occluded16(valid, scene, &packet.ray, arguments);
     }
 };
@@ -73,11 +77,11 @@ template <int W> struct RayLanes {
     LanesThread<W>* thread;
     void* payload;
     const OxrtTraversableView* root;
+    GraphPath* paths = nullptr; /* each lane's way to its hit in scenes that kernels walk through themselves, else null */
     Lanes<float, W> tmin, tmax;
     Lanes<float, W> t; /* what getRayTmax gives */
     Lanes<uint32_t, W> mask;
     Lanes<uint32_t, W> sbtOffset, sbtStride, missIndex;
-    GraphPath* paths = nullptr; /* each lane's way to its hit in scenes that kernels walk through themselves, else null */
     uint32_t flags;
     Lanes<bool, W> active; /* the lanes that hit something, or missed */
     const OxrtInstanceView* commonInstance; /* if all active lanes hit one geometry: its instance or null */
@@ -133,10 +137,6 @@ template <class T, int W> OXRT_INLINE WordPlaces<W> placesIn(const T* array, Lan
 
 #define OXRT_FIELD_OFFSET(type, field) int64_t(__builtin_offsetof(type, field))
 
-/* The lanes that hit something inside of an instance. */
-template <int W> OXRT_INLINE Lanes<bool, W> inInstance(const RayLanes<W>& ray) {
-    if (!ray.root->instances)
-        return false;
 /* The innermost instance on the way to the hit, null without. */
 OXRT_INLINE const OxrtInstanceView* innermostInstance(const GraphPath& path) { return path.native ? path.native : path.instance; }
 
@@ -147,19 +147,19 @@ template <class T, class F, int W> __attribute__((noinline)) Lanes<T, W> mapPath
     return result;
 }
 
-    return ray.active & (packetLanes<W>(ray.packet.hit.instID[0]) != RTC_INVALID_GEOMETRY_ID);
-}
+/* The lanes that hit something inside of an instance. */
+template <int W> OXRT_INLINE Lanes<bool, W> inInstance(const RayLanes<W>& ray) {
     if (ray.paths)
         return mapPaths(ray, 0u, [](const GraphPath& path, int) { return innermostInstance(path) ? 1u : 0u; }) != 0u;
+    if (!ray.root->instances)
+        return false;
+    return ray.active & (packetLanes<W>(ray.packet.hit.instID[0]) != RTC_INVALID_GEOMETRY_ID);
+}
 template <int W> OXRT_INLINE WordPlaces<W> instancePlaces(const RayLanes<W>& ray) {
     return placesIn<OxrtInstanceView, W>(ray.root->instances, packetLanes<W>(ray.packet.hit.instID[0]));
 }
 /* A 4-byte field of each lane's instance, `otherwise` without one. */
 template <class T, int W> OXRT_INLINE Lanes<T, W> instanceField(const RayLanes<W>& ray, int64_t offset, T otherwise) {
-    if (ray.commonGeometry) {
-        T value = otherwise;
-        if (ray.commonInstance)
-            __builtin_memcpy(&value, reinterpret_cast<const char*>(ray.commonInstance) + offset, sizeof(T));
     if (ray.paths)
         return mapPaths(ray, otherwise, [=](const GraphPath& path, int) {
             T value = otherwise;
@@ -167,6 +167,10 @@ template <class T, int W> OXRT_INLINE Lanes<T, W> instanceField(const RayLanes<W
                 __builtin_memcpy(&value, reinterpret_cast<const char*>(instance) + offset, sizeof(T));
             return value;
         });
+    if (ray.commonGeometry) {
+        T value = otherwise;
+        if (ray.commonInstance)
+            __builtin_memcpy(&value, reinterpret_cast<const char*>(ray.commonInstance) + offset, sizeof(T));
         return value;
     }
     const Lanes<bool, W> mask = inInstance(ray);
@@ -175,14 +179,14 @@ template <class T, int W> OXRT_INLINE Lanes<T, W> instanceField(const RayLanes<W
 
 /* Addresses of the geometries that were hit. */
 template <int W> OXRT_INLINE AddressPlaces<W> geometryPlaces(const RayLanes<W>& ray) {
-    const Lanes<uint64_t, W> id = convert<uint64_t>(packetLanes<W>(ray.packet.hit.geomID));
-    Lanes<uint64_t, W> geometries = reinterpret_cast<uint64_t>(ray.root->geometries);
-    const Lanes<bool, W> mask = inInstance(ray);
-    if (any(mask)) {
     if (ray.paths)
         return {mapPaths(ray, uint64_t(0), [&](const GraphPath& path, int lane) {
             return reinterpret_cast<uint64_t>(structureOf(path).geometries + ray.packet.hit.geomID[lane]);
         })};
+    const Lanes<uint64_t, W> id = convert<uint64_t>(packetLanes<W>(ray.packet.hit.geomID));
+    Lanes<uint64_t, W> geometries = reinterpret_cast<uint64_t>(ray.root->geometries);
+    const Lanes<bool, W> mask = inInstance(ray);
+    if (any(mask)) {
         const AddressPlaces<W> child{gather<uint64_t, W>(instancePlaces(ray), OXRT_FIELD_OFFSET(OxrtInstanceView, child), mask)};
         geometries = select(mask, gather<uint64_t, W>(child, OXRT_FIELD_OFFSET(OxrtTraversableView, geometries), mask), geometries);
     }
@@ -219,15 +223,11 @@ template <int W> OXRT_INLINE Lanes<uint32_t, W> getInstanceId(const RayLanes<W>&
     return instanceField<uint32_t>(ray, OXRT_FIELD_OFFSET(OxrtInstanceView, instanceId), ~0u);
 }
 template <int W> OXRT_INLINE Lanes<uint32_t, W> getInstanceIndex(const RayLanes<W>& ray) {
-    return select(inInstance(ray), packetLanes<W>(ray.packet.hit.instID[0]), 0u);
-}
-template <int W> OXRT_INLINE Lanes<uint32_t, W> getClusterId(const RayLanes<W>&) { return ~0u; }
-template <int W> OXRT_INLINE Lanes<uint32_t, W> geometryType(const RayLanes<W>& ray) {
     if (ray.paths)
         return mapPaths(ray, 0u, [&](const GraphPath& path, int lane) {
             return path.native ? ray.packet.hit.instID[0][lane] : path.instanceIndex;
         });
-    return OXRT_GEOMETRY_FIELD(uint32_t, ray, primitiveType);
+    return select(inInstance(ray), packetLanes<W>(ray.packet.hit.instID[0]), 0u);
 }
 /* Of all instances above the primitive. */
 template <int W> OXRT_INLINE Lanes<uint32_t, W> instanceSbtOffset(const RayLanes<W>& ray) {
@@ -235,17 +235,21 @@ template <int W> OXRT_INLINE Lanes<uint32_t, W> instanceSbtOffset(const RayLanes
         return mapPaths(ray, 0u, [](const GraphPath& path, int) { return path.sbtOffset + (path.native ? path.native->sbtOffset : 0); });
     return instanceField<uint32_t>(ray, OXRT_FIELD_OFFSET(OxrtInstanceView, sbtOffset), 0u);
 }
+template <int W> OXRT_INLINE Lanes<uint32_t, W> getClusterId(const RayLanes<W>&) { return ~0u; }
+template <int W> OXRT_INLINE Lanes<uint32_t, W> geometryType(const RayLanes<W>& ray) {
+    return OXRT_GEOMETRY_FIELD(uint32_t, ray, primitiveType);
+}
 
 /* The scalar ray of one lane, with what the getters of a hit read: for device functions that few programs use. */
 template <int W> OXRT_INLINE void scalarHit(Ray& one, const RayLanes<W>& ray, int lane) {
     const auto& packet = ray.packet;
     one.thread = ray.thread->thread;
     one.root = ray.root;
+    one.path = ray.paths ? ray.paths + lane : nullptr;
     one.origin = {packet.ray.org_x[lane], packet.ray.org_y[lane], packet.ray.org_z[lane]};
     one.direction = {packet.ray.dir_x[lane], packet.ray.dir_y[lane], packet.ray.dir_z[lane]};
     one.tmin = ray.tmin[lane];
     one.time = packet.ray.time[lane];
-    one.path = ray.paths ? ray.paths + lane : nullptr;
     one.flags = ray.flags;
     const RTCHit hit = {packet.hit.Ng_x[lane], packet.hit.Ng_y[lane], packet.hit.Ng_z[lane], packet.hit.u[lane], packet.hit.v[lane],
                         packet.hit.primID[lane], packet.hit.geomID[lane], {packet.hit.instID[0][lane]}, {0}};
@@ -297,7 +301,8 @@ template <int W> OXRT_INLINE MatrixLanes<W> instanceMatrix(const RayLanes<W>& ra
     return result;
 }
 /* In instances the transformed value, elsewhere the value itself, bit for bit. */
-template <class F, int W> OXRT_INLINE Wide<float3, W> throughInstance(const RayLanes<W>& ray, int64_t offset, const Wide<float3, W>& value, F f) {
+template <class F, int W>
+OXRT_INLINE Wide<float3, W> throughInstance(const RayLanes<W>& ray, int64_t offset, const Wide<float3, W>& value, F f) {
     const Lanes<bool, W> mask = inInstance(ray);
     if (none(mask))
         return value;
@@ -314,11 +319,6 @@ template <class M, class V> OXRT_INLINE V vectorThrough(const M& m, const V& v) 
 template <class M, class V> OXRT_INLINE V normalThrough(const M& m, const V& n) {
     return {m[0] * n.x + m[4] * n.y + m[8] * n.z, m[1] * n.x + m[5] * n.y + m[9] * n.z, m[2] * n.x + m[6] * n.y + m[10] * n.z};
 }
-#define OXRT_LANES_TRANSFORM(name, through, matrix)                                                                    \
-    template <int W, class V> OXRT_INLINE Wide<float3, W> name(const RayLanes<W>& ray, const V& value) {               \
-        return throughInstance(ray, OXRT_FIELD_OFFSET(OxrtInstanceView, matrix), Wide<float3, W>(value),               \
-                               [](const auto& m, const auto& x) { return through(m, x); });                            \
-    }
 template <int W, class F> OXRT_INLINE Wide<float3, W> throughPaths(const RayLanes<W>& ray, const Wide<float3, W>& value, F transform) {
     return mapHits(ray, [&](const Ray& one, int lane) {
         float3 own;
@@ -326,10 +326,15 @@ template <int W, class F> OXRT_INLINE Wide<float3, W> throughPaths(const RayLane
         return transform(one, own);
     });
 }
-OXRT_LANES_TRANSFORM(transformPointFromObjectToWorldSpace, pointThrough, objectToWorld)
-OXRT_LANES_TRANSFORM(transformPointFromWorldToObjectSpace, pointThrough, worldToObject)
+#define OXRT_LANES_TRANSFORM(name, through, matrix)                                                                    \
+    template <int W, class V> OXRT_INLINE Wide<float3, W> name(const RayLanes<W>& ray, const V& value) {               \
         if (ray.paths)                                                                                                 \
             return throughPaths<W>(ray, Wide<float3, W>(value), [](const Ray& one, const float3& x) { return name(one, x); }); \
+        return throughInstance(ray, OXRT_FIELD_OFFSET(OxrtInstanceView, matrix), Wide<float3, W>(value),               \
+                               [](const auto& m, const auto& x) { return through(m, x); });                            \
+    }
+OXRT_LANES_TRANSFORM(transformPointFromObjectToWorldSpace, pointThrough, objectToWorld)
+OXRT_LANES_TRANSFORM(transformPointFromWorldToObjectSpace, pointThrough, worldToObject)
 OXRT_LANES_TRANSFORM(transformVectorFromObjectToWorldSpace, vectorThrough, objectToWorld)
 OXRT_LANES_TRANSFORM(transformVectorFromWorldToObjectSpace, vectorThrough, worldToObject)
 OXRT_LANES_TRANSFORM(transformNormalFromObjectToWorldSpace, normalThrough, worldToObject)
@@ -347,13 +352,13 @@ template <int W, class Places> OXRT_INLINE Wide<float3, W> vertexAt(const Places
     return {gather<float, W>(places, 0, mask), gather<float, W>(places, 4, mask), gather<float, W>(places, 8, mask)};
 }
 template <int W> OXRT_INLINE Wide<TriangleVertices, W> getTriangleVertexData(const RayLanes<W>& ray) {
+    if (ray.root->needs & OXRT_SCENE_HAS_MOTION)
+        return mapHits(ray, [](const Ray& one, int) { return getTriangleVertexData(one); });
     const Lanes<uint32_t, W> primitive = localPrimitive(ray);
     const Lanes<bool, W> mask = ray.active;
     Wide<float3, W> corners[3];
     if (ray.commonGeometry) {
         const WordPlaces<W> indices = placesIn<uint3, W>(reinterpret_cast<const uint3*>(ray.commonGeometry->indices), primitive);
-    if (ray.root->needs & OXRT_SCENE_HAS_MOTION)
-        return mapHits(ray, [](const Ray& one, int) { return getTriangleVertexData(one); });
         for (int i = 0; i < 3; ++i) {
             const Lanes<uint32_t, W> vertex = gather<uint32_t, W>(indices, 4 * i, mask);
             corners[i] = vertexAt<W>(placesIn<float3, W>(reinterpret_cast<const float3*>(ray.commonGeometry->vertices), vertex), mask);

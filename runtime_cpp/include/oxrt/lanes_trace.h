@@ -16,7 +16,8 @@ inline namespace OXRT_ISA {
 /* ---- queries ------------------------------------------------------------------------------------------------------------------ */
 
 template <class T, int W> OXRT_INLINE void setPacket(T (&values)[W], Lanes<T, W> lanes) { storeLanes<T, W>(values, lanes); }
-template <int W> OXRT_INLINE void setPacket(unsigned (&values)[W], uint32_t value) { storeLanes<uint32_t, W>(values, Lanes<uint32_t, W>(value)); }
+template <int W>
+OXRT_INLINE void setPacket(unsigned (&values)[W], uint32_t value) { storeLanes<uint32_t, W>(values, Lanes<uint32_t, W>(value)); }
 
 /* Whether the active rays start at one point, and go in about one direction: within 25 degrees of the first. */
 template <int W>
@@ -66,6 +67,7 @@ template <int W> OXRT_INLINE void beginCandidates(CandidateLanes<W>& candidates,
     candidates.isTerminated = false;
     candidates.closest = ray.tmax;
     candidates.closestInEmbree = packetLanes<W>(ray.packet.ray.tfar);
+    candidates.committedKind = NO_REPORT;
     auto& world = candidates.packet.ray;
     const auto& own = ray.packet.ray;
     __builtin_memcpy(world.org_x, own.org_x, sizeof(own.org_x));
@@ -75,6 +77,14 @@ template <int W> OXRT_INLINE void beginCandidates(CandidateLanes<W>& candidates,
     __builtin_memcpy(world.dir_y, own.dir_y, sizeof(own.dir_y));
     __builtin_memcpy(world.dir_z, own.dir_z, sizeof(own.dir_z));
     __builtin_memcpy(world.time, own.time, sizeof(own.time));
+}
+
+/* Embree drops lanes whose interval is empty before it calls back; for reports an interval of one number is not. */
+template <int W> OXRT_INLINE void openEmptyIntervals(CandidateLanes<W>& candidates, typename CandidateLanes<W>::PacketRay& packet) {
+    const Lanes<bool, W> isEmpty = packetLanes<W>(packet.tnear) > packetLanes<W>(packet.tfar);
+    setPacket(packet.tnear, select(isEmpty, candidates.tmin, packetLanes<W>(packet.tnear)));
+    setPacket(packet.tfar, select(isEmpty, candidates.tmax, packetLanes<W>(packet.tfar)));
+    candidates.closestInEmbree = packetLanes<W>(packet.tfar);
 }
 
 /* The masked lanes as one packet whose candidates the programs judge; the lanes that hit something. */
@@ -98,6 +108,8 @@ __attribute__((noinline)) Lanes<bool, W> traverseCandidates(RayLanes<W>& ray, La
             flags |= RTC_RAY_QUERY_FLAG_INVOKE_ARGUMENT_FILTER;
     }
     auto& packet = ray.packet;
+    if constexpr (Scalar::hasIntersection)
+        openEmptyIntervals(candidates, packet.ray);
     if constexpr (ANY) {
         RTCOccludedArguments arguments = {flags, RTC_FEATURE_FLAG_ALL, &query.context, filter, nullptr, 0.0f};
         if constexpr (Scalar::hasIntersection)
@@ -114,7 +126,7 @@ __attribute__((noinline)) Lanes<bool, W> traverseCandidates(RayLanes<W>& ray, La
         const Lanes<float, W> tfar = packetLanes<W>(packet.ray.tfar);
         Lanes<bool, W> isOwn = candidates.isTerminated;
         if constexpr (Scalar::hasIntersection) {
-            isOwn |= tfar == candidates.closestInEmbree;
+            isOwn |= (tfar == candidates.closestInEmbree) & (candidates.committedKind != NO_REPORT);
             ray.kind = candidates.committedKind;
             for (int i = 0; i < 8; ++i)
                 ray.attributes[i] = candidates.committedAttributes[i];
@@ -130,6 +142,7 @@ template <int W> OXRT_INLINE void scalarRay(Ray& one, const RayLanes<W>& ray, vo
     one.thread = &ray.thread->atLane(lane);
     one.payload = payload;
     one.root = ray.root;
+    one.path = nullptr;
     one.origin = {packet.org_x[lane], packet.org_y[lane], packet.org_z[lane]};
     one.direction = {packet.dir_x[lane], packet.dir_y[lane], packet.dir_z[lane]};
     one.tmin = ray.tmin[lane];
@@ -142,7 +155,6 @@ template <int W> OXRT_INLINE void scalarRay(Ray& one, const RayLanes<W>& ray, vo
     one.missIndex = ray.missIndex[lane];
 }
 
-    one.path = nullptr;
 /* Enters the closest hit of one lane. */
 template <int W> OXRT_INLINE void enterScalarHit(RayLanes<W>& ray, const Ray& one, int lane) {
     auto& hit = ray.packet.hit;
@@ -168,7 +180,6 @@ template <class Programs, class Flags, bool ANY, int W>
 __attribute__((noinline)) Lanes<bool, W> traverseLanes(RayLanes<W>& ray, Lanes<bool, W> mask, typename Programs::Payload& payload) {
     using Scalar = typename Programs::Scalar;
     uint32_t hits = 0;
-    uint32_t thrown = 0;
     eachLane(mask, [&](int lane) {
         typename Scalar::Payload own;
         if constexpr (!isSame<typename Scalar::Payload, NoPayload>)
@@ -184,8 +195,7 @@ __attribute__((noinline)) Lanes<bool, W> traverseLanes(RayLanes<W>& ray, Lanes<b
             insertLane(payload, own, lane);
         if constexpr (Scalar::mayThrow)
             if (one.thread->exceptionPending) {
-                thrown |= 1u << lane;
-                takeException(*ray.thread, lane);
+                takeExceptions(*ray.thread, Lanes<bool, W>::ofBits(1u << lane));
                 return;
             }
         if (isHit) {
@@ -194,27 +204,16 @@ __attribute__((noinline)) Lanes<bool, W> traverseLanes(RayLanes<W>& ray, Lanes<b
                 enterScalarHit(ray, one, lane);
         }
     });
-    ray.thread->thrown |= Lanes<bool, W>::ofBits(thrown);
     return Lanes<bool, W>::ofBits(hits);
-}
-
-/* Moves the exception that a scalar program threw to its lane. */
-template <int W> void takeException(LanesThread<W>& thread, int lane) {
-    OxrtThread& scalar = *thread.thread;
-    thread.exceptionCode.set(lane, scalar.exceptionCode);
-    for (int i = 0; i < 8; ++i)
-        thread.exceptionDetails[i].set(lane, scalar.exceptionDetails[i]);
-    thread.exceptionLine = scalar.exceptionLine;
-    scalar.exceptionPending = 0;
 }
 
 /* ---- trace -------------------------------------------------------------------------------------------------------------------- */
 
 template <class Programs, class Flags, bool ANY, int W>
 OXRT_INLINE Lanes<bool, W> traverse(RayLanes<W>& ray, Lanes<bool, W> mask, typename Programs::Payload& payload, bool isCoherent) {
+    using Scalar = typename Programs::Scalar;
     if (__builtin_expect(ray.paths != nullptr, 0))
         return traverseLanes<Programs, Flags, ANY>(ray, mask, payload);
-    using Scalar = typename Programs::Scalar;
     if constexpr (!hasCallbacks<Scalar, Flags>)
         return traversePacket<Flags, ANY>(ray, mask, isCoherent);
     else {
@@ -230,11 +229,13 @@ OXRT_INLINE Lanes<bool, W> traverse(RayLanes<W>& ray, Lanes<bool, W> mask, typen
     }
 }
 
-template <class Programs, int W> OXRT_INLINE void runMisses(RayLanes<W>& ray, Lanes<bool, W> mask, typename Programs::Payload& payload, Place place) {
+template <class Programs, int W>
+OXRT_INLINE void runMisses(RayLanes<W>& ray, Lanes<bool, W> mask, typename Programs::Payload& payload, Place place) {
     const OxrtLaunch& launch = *ray.thread->thread->launch;
     ray.t = ray.tmax;
     ray.active = mask;
-    const Lanes<bool, W> found = findRecords(ray.records, launch, mask, launch.missRecords, launch.missStride, launch.missCount, ray.missIndex);
+    const Lanes<bool, W> found = findRecords(ray.records, launch, mask, launch.missRecords, launch.missStride, launch.missCount,
+                                             ray.missIndex);
     if constexpr (Programs::Scalar::isValidated)
         fault(*ray.thread, mask & (ray.missIndex >= launch.missCount), OXRT_FAULT_MISS_SBT,
               "miss_sbt_index is not below the number of miss records", place);
@@ -245,7 +246,8 @@ template <class Programs, int W> OXRT_INLINE void runMisses(RayLanes<W>& ray, La
 template <class Programs, int W> OXRT_INLINE void runClosestHits(RayLanes<W>& ray, typename Programs::Payload& payload, Place place) {
     const Lanes<bool, W> found = findHitRecords(ray);
     if constexpr (Programs::Scalar::isValidated)
-        fault(*ray.thread, without(ray.active, found), OXRT_FAULT_HIT_SBT, "the hit needs a record behind the end of the hit group records", place);
+        fault(*ray.thread, without(ray.active, found), OXRT_FAULT_HIT_SBT,
+              "the hit needs a record behind the end of the hit group records", place);
     if (any(found)) {
         ray.active = found;
         Programs::closestHit(ray, found, payload);
@@ -262,8 +264,10 @@ OXRT_INLINE void traceNow(RayLanes<W>& ray, Lanes<bool, W> mask, typename Progra
     const Lanes<bool, W> traced = mask & (ray.tmin <= ray.tmax);
     if (ray.root && ray.root->scene && any(traced)) {
         hit = traverse<Programs, Flags, Known::alwaysTerminates && !runsClosestHit>(ray, traced, payload, isCoherent);
-        if constexpr (Scalar::mayThrow)
+        if constexpr (Scalar::mayThrow) {
             mask = without(mask, ray.thread->thrown);
+            hit = hit & mask;
+        }
     }
     if constexpr (runsClosestHit)
         if (any(hit) && !(ray.flags & RAY_DISABLE_CLOSESTHIT)) {
@@ -282,22 +286,29 @@ template <int W> OXRT_INLINE void checkRays(const RayLanes<W>& ray, Lanes<bool, 
         Ray one;
         scalarRay(one, ray, nullptr, lane);
         if (!isValidRay(one))
-            faultWithValues(*one.thread, OXRT_FAULT_INVALID_RAY, "invalid ray (origin, direction, tmin, tmax)", place, one.origin.x, one.origin.y,
-                            one.origin.z, one.direction.x, one.direction.y, one.direction.z, one.tmin, one.tmax);
+            faultWithValues(*one.thread, OXRT_FAULT_INVALID_RAY, "invalid ray (origin, direction, tmin, tmax)", place, one.origin.x,
+                            one.origin.y, one.origin.z, one.direction.x, one.direction.y, one.direction.z, one.tmin, one.tmax);
         else if (!ray.root && handle != 0)
-            fault(*one.thread, OXRT_FAULT_INVALID_TRAVERSABLE, "the handle names no traversable of this context, or one that was destroyed", place);
+            fault(*one.thread, OXRT_FAULT_INVALID_TRAVERSABLE,
+                  "the handle names no traversable of this context, or one that was destroyed", place);
     });
 }
 
 /* The trace of the masked lanes. The handle and the flags are the same for all of them. */
 template <class Programs, class Flags, int W>
-OXRT_INLINE void trace(LanesThread<W>& thread, Lanes<bool, W> mask, uint64_t handle, const Wide<float3, W>& origin, const Wide<float3, W>& direction,
-                       Wide<float, W> tmin, Wide<float, W> tmax, Wide<float, W> time, Wide<uint32_t, W> visibility, Flags flags,
+OXRT_INLINE void trace(LanesThread<W>& thread, Lanes<bool, W> mask, uint64_t handle, const Wide<float3, W>& origin,
+                       const Wide<float3, W>& direction, Wide<float, W> tmin, Wide<float, W> tmax, Wide<float, W> time, Wide<uint32_t, W> visibility, Flags flags,
                        Wide<uint32_t, W> sbtOffset, Wide<uint32_t, W> sbtStride, Wide<uint32_t, W> missIndex,
                        typename Programs::Payload& payload, Place place = Place::current()) {
     using Scalar = typename Programs::Scalar;
-    if (none(mask) || !enterTrace<Scalar>(*thread.thread, place))
+    if (none(mask))
         return;
+    OxrtThread& one = Scalar::countsDepth ? thread.atLane(firstLane(mask)) : *thread.thread;
+    if (!enterTrace<Scalar>(one, place)) {
+        if constexpr (Scalar::depthThrows || Scalar::overflowThrows)
+            takeExceptions(thread, mask);
+        return;
+    }
     typename Packet<W>::RayHit rays;
     RayLanes<W> ray(rays);
     ray.thread = &thread;
@@ -307,6 +318,9 @@ OXRT_INLINE void trace(LanesThread<W>& thread, Lanes<bool, W> mask, uint64_t han
         ray.writeWord = writePayloadWord<typename Scalar::Payload, W>;
     }
     ray.root = findTraversable(*thread.thread->launch, handle);
+    GraphPath paths[W];
+    if (ray.root && __builtin_expect(isGraph(*ray.root), 0))
+        ray.paths = paths;
     auto& packet = rays.ray;
     setPacket(packet.org_x, origin.x);
     setPacket(packet.org_y, origin.y);
@@ -317,9 +331,6 @@ OXRT_INLINE void trace(LanesThread<W>& thread, Lanes<bool, W> mask, uint64_t han
     setPacket(packet.dir_z, direction.z);
     setPacket(packet.time, Scalar::usesTime ? time : Lanes<float, W>(0.0f));
     setPacket(packet.tfar, nextDown(tmax));
-    GraphPath paths[W];
-    if (ray.root && __builtin_expect(isGraph(*ray.root), 0))
-        ray.paths = paths;
     ray.mask = visibility & 0xFFu;
     setPacket(packet.mask, ray.mask);
     setPacket<W>(packet.flags, 0u);

@@ -116,7 +116,8 @@ template <int W, class T> requires(!Number<T> && vectorSize<T> == 0) OXRT_INLINE
 /* ---- single lanes ------------------------------------------------------------------------------------------------------------- */
 
 template <class T, class U, int W> OXRT_INLINE void extractPart(T& to, const Lanes<U, W>& from, int lane) { to = T(from[lane]); }
-template <class T, int RANK, int W> OXRT_INLINE void extractPart(Array<T, RANK>& to, const VaryingArray<Array<T, RANK>, W>& from, int lane) {
+template <class T, int RANK, int W>
+OXRT_INLINE void extractPart(Array<T, RANK>& to, const VaryingArray<Array<T, RANK>, W>& from, int lane) {
     to.data = reinterpret_cast<T*>(from.data[lane]);
     for (int axis = 0; axis < RANK; ++axis)
         to.shape[axis] = from.shape[axis][lane];

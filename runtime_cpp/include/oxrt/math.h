@@ -1,7 +1,7 @@
 /* The mathematics of device code: every function of the manual's table, for scalars, lanes, and vectors of either.
  *
  * Precise mode (the default) is within 1 ulp for float32 and gives the same bits in scalar and SPMD kernels; with OXRT_FAST_MATH
- * defined, the functions that `fast` has are within 4 ulp over the ranges stated in math_fast.h. float64 functions are libm's. docs/math.md lists measured errors and times.
+ * defined, float32 functions are within 4 ulp. float64 functions are libm's. docs/math.md lists measured errors and times.
  */
 #ifndef OXRT_MATH_H
 #define OXRT_MATH_H
@@ -254,7 +254,8 @@ template <class A, class B, int N> OXRT_INLINE Vector<Common<A, B>, N> reflect(c
 }
 
 /* The refracted direction of GLSL for unit i and n and eta = outside over inside; zero under total reflection. */
-template <class A, class B, Number C, int N> OXRT_INLINE Vector<Common<Common<A, B>, C>, N> refract(const Vector<A, N>& i, const Vector<B, N>& n, C eta) {
+template <class A, class B, Number C, int N>
+OXRT_INLINE Vector<Common<Common<A, B>, C>, N> refract(const Vector<A, N>& i, const Vector<B, N>& n, C eta) {
     using R = Common<Common<A, B>, C>;
     using E = ElementOf<R>;
     const R cosine = R(dot(n, i));

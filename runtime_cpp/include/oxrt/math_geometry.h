@@ -37,7 +37,8 @@ template <Number A, Number B, Number C> OXRT_INLINE auto fma(A a, B b, C c) {
     else
         return mapLanes([](double x, double y, double z) { return __builtin_fma(x, y, z); }, R(a), R(b), R(c));
 }
-template <class A, class B, class C> requires(IsVector<A> || IsVector<B> || IsVector<C>) OXRT_INLINE auto fma(const A& a, const B& b, const C& c) {
+template <class A, class B, class C> requires(IsVector<A> || IsVector<B> || IsVector<C>)
+OXRT_INLINE auto fma(const A& a, const B& b, const C& c) {
     constexpr int size = commonSize<A, B> > vectorSize<C> ? commonSize<A, B> : vectorSize<C>;
     return mapComponents<size>([](auto x, auto y, auto z) { return fma(x, y, z); }, a, b, c);
 }

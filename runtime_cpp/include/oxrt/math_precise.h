@@ -85,8 +85,10 @@ template <class F> OXRT_INLINE F clampForExponential(F x, float low, float high)
     return select(below < F(low), F(low), below);
 }
 
-template <Float32 F> OXRT_INLINE F exp(F x) { return convert<float>(exponential(convert<double>(clampForExponential(x, -110.0f, 100.0f)))); }
-template <Float32 F> OXRT_INLINE F exp2(F x) { return convert<float>(exponential2(convert<double>(clampForExponential(x, -160.0f, 140.0f)))); }
+template <Float32 F>
+OXRT_INLINE F exp(F x) { return convert<float>(exponential(convert<double>(clampForExponential(x, -110.0f, 100.0f)))); }
+template <Float32 F>
+OXRT_INLINE F exp2(F x) { return convert<float>(exponential2(convert<double>(clampForExponential(x, -160.0f, 140.0f)))); }
 template <Float32 F> OXRT_INLINE F log(F x) { return logarithm(x, 0x1.62e42fefa39efp-1, 1.0); }
 template <Float32 F> OXRT_INLINE F log2(F x) { return logarithm(x, 1.0, 0x1.71547652b82fep+0); }
 template <Float32 F> OXRT_INLINE F log10(F x) { return logarithm(x, 0x1.34413509f79ffp-2, 0x1.bcb7b1526e50ep-2); }
@@ -122,7 +124,8 @@ template <Float32 F> OXRT_INLINE F pow(F x, F y) {
 /* ---- trigonometry ------------------------------------------------------------------------------------------------------------- */
 
 template <class D> OXRT_INLINE D sinePolynomial(D r, D r2) {
-    return r * polynomial(r2, 0x1.fffffffff5fd8p-1, -0x1.55555548e20f3p-3, 0x1.11110717ae10ap-7, -0x1.a00ec68854268p-13, 0x1.6cb086ea8a42dp-19);
+    return r * polynomial(r2, 0x1.fffffffff5fd8p-1, -0x1.55555548e20f3p-3, 0x1.11110717ae10ap-7, -0x1.a00ec68854268p-13,
+                          0x1.6cb086ea8a42dp-19);
 }
 template <class D> OXRT_INLINE D cosinePolynomial(D r2) {
     return polynomial(r2, 0x1.ffffffffffdb0p-1, -0x1.ffffffffdfeedp-2, 0x1.555555430cc02p-5, -0x1.6c16b20899c00p-10, 0x1.a00e38f91c8d1p-16,
@@ -216,7 +219,8 @@ template <Float32 F> OXRT_INLINE F tan(F x) {
 
 /* atan(t) for 0 <= t <= 1. */
 template <class D> OXRT_INLINE D arcTangent(D t) {
-    return t * polynomial(t * t, 0x1.ffffffffff78dp-1, -0x1.555555536a120p-2, 0x1.9999987064c97p-3, -0x1.2492257d17801p-3, 0x1.c717ef608fb7dp-4,
+    return t * polynomial(t * t, 0x1.ffffffffff78dp-1, -0x1.555555536a120p-2, 0x1.9999987064c97p-3, -0x1.2492257d17801p-3,
+                          0x1.c717ef608fb7dp-4,
                           -0x1.7430bb6c8d589p-4, 0x1.39f352fd19d39p-4, -0x1.0bf4cda38ae43p-4, 0x1.c04463c27fe7fp-5, -0x1.5ca775207070cp-5,
                           0x1.d61eb28107a51p-6, -0x1.facd0168cea8bp-7, 0x1.8d530d0383e62p-8, -0x1.8b03d906f76dcp-10, 0x1.7176169c99d16p-13);
 }
@@ -272,7 +276,8 @@ template <Float32 F> OXRT_INLINE F atan2(F y, F x) {
 
 /* sinh for |x| <= 1, where the difference of exponentials cancels. */
 template <class D> OXRT_INLINE D smallHyperbolicSine(D x) {
-    return x * polynomial(x * x, 0x1.00000000328d3p+0, 0x1.5555550419abdp-3, 0x1.11113a6d1d473p-7, 0x1.9ffcb50be6203p-13, 0x1.7a4bbe998b249p-19);
+    return x * polynomial(x * x, 0x1.00000000328d3p+0, 0x1.5555550419abdp-3, 0x1.11113a6d1d473p-7, 0x1.9ffcb50be6203p-13,
+                          0x1.7a4bbe998b249p-19);
 }
 
 template <Float32 F> OXRT_INLINE F sinh(F x) {

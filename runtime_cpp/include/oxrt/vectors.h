@@ -83,7 +83,8 @@ template <class T> struct Vector<T, 2> {
     Vector() = default;
     OXRT_INLINE constexpr explicit Vector(T all) : x(all), y(all) {}
     OXRT_INLINE constexpr Vector(T x_, T y_) : x(x_), y(y_) {}
-    template <class U> requires(!isSame<T, U>&& isSame<T, Common<T, U>>) OXRT_INLINE constexpr Vector(const Vector<U, 2>& v) : x(v.x), y(v.y) {}
+    template <class U> requires(!isSame<T, U>&& isSame<T, Common<T, U>>)
+    OXRT_INLINE constexpr Vector(const Vector<U, 2>& v) : x(v.x), y(v.y) {}
     OXRT_INLINE constexpr T& operator[](int i) { return i == 0 ? x : y; }
     OXRT_INLINE constexpr const T& operator[](int i) const { return i == 0 ? x : y; }
 };
@@ -252,13 +253,15 @@ OXRT_MATRIX_OPERATOR(+)
 OXRT_MATRIX_OPERATOR(-)
 #undef OXRT_MATRIX_OPERATOR
 
-template <class A, Number B, int R, int C> OXRT_INLINE constexpr Matrix<Common<A, B>, R, C> operator*(const Matrix<A, R, C>& m, const B& x) {
+template <class A, Number B, int R, int C>
+OXRT_INLINE constexpr Matrix<Common<A, B>, R, C> operator*(const Matrix<A, R, C>& m, const B& x) {
     Matrix<Common<A, B>, R, C> result;
     for (int i = 0; i < R; ++i)
         result[i] = m[i] * x;
     return result;
 }
-template <Number A, class B, int R, int C> OXRT_INLINE constexpr Matrix<Common<A, B>, R, C> operator*(const A& x, const Matrix<B, R, C>& m) {
+template <Number A, class B, int R, int C>
+OXRT_INLINE constexpr Matrix<Common<A, B>, R, C> operator*(const A& x, const Matrix<B, R, C>& m) {
     return m * x;
 }
 template <class T, int R, int C> OXRT_INLINE constexpr Matrix<T, R, C> operator-(const Matrix<T, R, C>& m) {
