@@ -42,8 +42,6 @@ OXRT_INLINE const OxrtTraversableView* findTraversable(const OxrtLaunch& launch,
     return __builtin_expect(isCurrent, 1) ? __atomic_load_n(&found.view, __ATOMIC_ACQUIRE) : nullptr;
 }
 
-/* Enter which primitive the hit is on. */
-OXRT_INLINE void locate(Ray& ray, uint32_t instance, const OxrtGeometry* geometry, uint32_t primitive) {
 /* Whether kernels walk through the scene themselves. */
 OXRT_INLINE bool isGraph(const OxrtTraversableView& view) { return view.needs & (OXRT_SCENE_MULTI_LEVEL | OXRT_SCENE_HAS_MOTION); }
 
@@ -52,6 +50,8 @@ inline __attribute__((noinline)) const OxrtInstanceView* findInstanceOnPath(Grap
     return path.native ? path.native : path.instance;
 }
 
+/* Enter which primitive the hit is on. */
+OXRT_INLINE void locate(Ray& ray, uint32_t instance, const OxrtGeometry* geometry, uint32_t primitive) {
     if (__builtin_expect(ray.path != nullptr, 0))
         ray.instance = findInstanceOnPath(*ray.path, instance);
     else

@@ -164,12 +164,12 @@ OXRT_INLINE void setRay(Ray& ray, OxrtThread& thread, uint64_t handle, const flo
     ray.thread = &thread;
     ray.payload = &payload;
     ray.root = findTraversable(*thread.launch, handle);
+    ray.path = nullptr;
     ray.origin = origin;
     ray.direction = direction;
     ray.tmin = tmin;
     ray.tmax = tmax;
     ray.time = Programs::usesTime ? time : 0.0f;
-    ray.path = nullptr;
     ray.mask = mask & 0xFF;
     ray.flags = flags & 0xFFFF;
     ray.sbtOffset = (sbtOffset | sbtStride >> 4) & 15; /* as in OptiX: the stride's bits 4 to 7 spill into the offset */
