@@ -166,13 +166,16 @@ void Instances::boundInstance(const RTCBoundsFunctionArguments* arguments)
 {
     const auto& self = *static_cast<const Instances*>(arguments->geometryUserPtr);
     const std::uint32_t number = arguments->primID;
-    *arguments->bounds_o = self.usable[number] ? imageOf(self.views[number].objectToWorld,
-                                                         self.children[self.childNumbers[number]].bounds[arguments->timeStep])
-                                               : emptyBounds();
+    if (self.usable[number])
+        *arguments->bounds_o = imageOf(self.views[number].objectToWorld,
+                                       self.children[self.childNumbers[number]].bounds[arguments->timeStep]);
+    else // a refit brings back no primitive that the build dropped, so one that may be usable later keeps a place
+        *arguments->bounds_o = self.keepsUnusable ? RTCBounds{} : emptyBounds();
 }
 
 void Instances::attachOwn(const EmbreeLibrary& embree, RTCDevice device, RTCScene scene, bool updatable)
 {
+    keepsUnusable = updatable;
     boundChildren();
     const RTCGeometry geometry = embree.rtcNewGeometry(device, RTC_GEOMETRY_TYPE_USER);
     embree.rtcSetGeometryUserPrimitiveCount(geometry, size());

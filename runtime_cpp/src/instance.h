@@ -64,6 +64,7 @@ private:
     std::vector<Child> children;
     const OxrtMotionOptions motion;
     bool native = true;
+    bool keepsUnusable = false;
     std::uint32_t sceneNeeds = 0;
     std::size_t singular = 0;
 };

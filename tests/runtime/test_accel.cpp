@@ -174,7 +174,7 @@ TEST(misuseOfBuildsIsNamed)
     CHECK_FAILS(build(bad), OXRT_ERROR_INVALID_VALUE, "2^29");
     bad = good;
     bad.numKeys = 3;
-    CHECK_FAILS(build(bad), OXRT_ERROR_NOT_SUPPORTED, "motion keys");
+    CHECK_FAILS(build(bad), OXRT_ERROR_INVALID_VALUE, "motion keys");
 
     Boxes boxes{{0, 0, 0, 1, 1, 1}};
     const OxrtBuildInput mixed[2] = {good, boxes.input()};

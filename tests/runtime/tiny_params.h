@@ -23,6 +23,7 @@ struct TinyParams {
     float cellSize;                // rays start at ((x + 1/2) cellSize, (y + 1/2) cellSize, -1)
     std::uint32_t useIntersection; // 1: custom primitives are hit at the entry of their box
     std::uint32_t faultIndex;
+    float time;
 };
 
 struct TinyRecord {

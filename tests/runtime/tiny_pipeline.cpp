@@ -5,6 +5,9 @@
 #include <cmath>
 #include <xmmintrin.h>
 
+// In graph_program.cpp.
+void runGraph(OxrtThread* thread, const OxrtTile* tile);
+
 namespace {
 
 const TinyParams& paramsOf(const OxrtThread* thread)
@@ -156,6 +159,7 @@ void runState(OxrtThread* thread, const OxrtTile* tile)
 
 const OxrtProgram programs[] = {
     {"__raygen__trace", OXRT_KIND_RAYGEN, 0, runTrace},
+    {"__raygen__graph", OXRT_KIND_RAYGEN, 0, runGraph},
     {"__raygen__count", OXRT_KIND_RAYGEN, 0, runCount},
     {"__raygen__empty", OXRT_KIND_RAYGEN, 0, runEmpty},
     {"__raygen__endless", OXRT_KIND_RAYGEN, 0, runEndless},

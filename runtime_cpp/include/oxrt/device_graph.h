@@ -98,7 +98,7 @@ template <class Programs, bool ANY, class Outer>
 OXRT_INLINE void enterInstance(GraphWalk& walk, uint32_t index, const RTCRay& parent, Outer& outer) {
     const OxrtTraversableView& structure = *walk.path.structure;
     const OxrtInstanceView& instance = structure.instances[index];
-    if (!(instance.visibilityMask & walk.ray.mask) || !instance.child || walk.ray.isTerminated)
+    if (!(instance.visibilityMask & walk.ray.mask) || !instance.child || !instance.child->scene || walk.ray.isTerminated)
         return;
     const float3 direction = transformVector(instance.worldToObject, {parent.dir_x, parent.dir_y, parent.dir_z});
     if (direction.x == 0.0f && direction.y == 0.0f && direction.z == 0.0f)
