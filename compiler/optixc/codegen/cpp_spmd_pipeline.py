@@ -229,7 +229,8 @@ class SpmdFile(PipelineFile):
         """Callables may call each other without end: a full stack ends the lanes, by an exception where the pipeline asks for it."""
         throws = bool(self._pipeline.options.exception_flags & EXCEPTION_FLAG_STACK_OVERFLOW)
         with self._writer.block("if (oxrt::isStackFull(*thread.thread))"):
-            self._writer.line(f"oxrt::overflowStack<{'true' if throws else 'false'}>(thread.atLane(oxrt::firstLane(mask)), oxrt::Place::current());")
+            lane = "thread.atLane(oxrt::firstLane(mask))"
+            self._writer.line(f"oxrt::overflowStack<{'true' if throws else 'false'}>({lane}, oxrt::Place::current());")
             if throws:
                 self._writer.line("oxrt::takeExceptions(thread, mask);")
             self._writer.line("return;" if is_void else "return result;")

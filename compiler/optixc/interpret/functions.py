@@ -24,7 +24,8 @@ _NATIVE_NAMES = {"rint": "round"}
 def function(machine: Any, row: Intrinsic, types: tuple[t.Type, ...], result: t.Type) -> Function:
     """What evaluates the row; `machine` knows the ray, the hit object and the thread."""
     if row.effect is not Effect.PURE:
-        return machine.effect(row)
+        effect: Function = machine.effect(row)
+        return effect
     if row.name.startswith("get_payload_"):
         index = int(row.name.removeprefix("get_payload_"))
         return lambda: machine.payload_word(index)

@@ -74,7 +74,8 @@ def limits(type_: t.Scalar) -> tuple[int, int]:
 
 def rounding(type_: t.Scalar) -> Callable[[float], float]:
     """What makes a binary64 number one of this floating type."""
-    return {16: float16, 32: float32, 64: float}[type_.bits]
+    by_bits: dict[int, Callable[[float], float]] = {16: float16, 32: float32, 64: float}
+    return by_bits[type_.bits]
 
 
 def convert(source: t.Scalar, target: t.Scalar) -> Callable[[Number], Number]:
