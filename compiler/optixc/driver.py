@@ -19,7 +19,9 @@ import numpy as np
 
 from optixc import passes, toolchain
 from optixc.cache import Cache, Json, digest
+from optixc.codegen.cpp_types import payload_words
 from optixc.codegen.emit import emit as emit_cpp
+from optixc.codegen.program_classes import constant, payload_of, traces_of
 from optixc.errors import FileIoError, InvalidOperationError, InvalidValueError, NotSupportedError, PipelineLinkError
 from optixc.frontend.compile import FrontendResult, compile_file, compile_functions
 from optixc.installation import include_folder
@@ -27,6 +29,7 @@ from optixc.ir import layout, nodes
 from optixc.ir import types as t
 from optixc.ir.walk import expressions, statements
 from optixc.options import BoundValue, CompileOptions
+from optixc.passes.callables import signatures_called
 from optixc.passes.features import Features, features
 from optixc.passes.pipeline import LinkError, link
 from optixc.passes.specialize import parameter_path
@@ -192,6 +195,7 @@ def describe_programs(module: nodes.Module) -> list[Json]:
 def _describe_program(program: nodes.Function) -> Json:
     record = next((one.local.type for one in program.parameters if one.role is nodes.ParameterRole.RECORD), None)
     assert program.kind is not None
+    payload = payload_of(program)
     described = isinstance(record, t.Struct)
     return {
         "name": program.name,
@@ -200,7 +204,35 @@ def _describe_program(program: nodes.Function) -> Json:
         "record_name": record.name if described and isinstance(record, t.Struct) else None,
         "source": str(program.span),
         "stack": _estimated_frame(program),
+        "payload": _payload_text(payload),
+        "payload_name": payload.name if payload is not None else None,
     }
+
+
+def _describe_trace(trace: nodes.Trace) -> Json:
+    """What of a trace decides the records that it reaches; None for what is no constant."""
+    sbt_offset, sbt_stride, miss = (constant(argument) for argument in trace.arguments[8:11])
+    return {
+        "name": trace.name,
+        "place": f"{trace.span.path}:{trace.span.line}",
+        "sbt_offset": sbt_offset,
+        "sbt_stride": sbt_stride,
+        "miss": miss,
+        "payload": _payload_text(trace.payload_type),
+        "payload_name": trace.payload_type.name if trace.payload_type is not None else None,
+    }
+
+
+def _trace_text(use: Json) -> str:
+    given = (("sbt_offset", "sbt_offset"), ("sbt_stride", "sbt_stride"), ("miss", "miss_sbt_index"))
+    words = ", ".join(f"{name} {use[key] if use[key] is not None else 'varies'}" for key, name in given)
+    carried = f"payload {use['payload_name']} of {len(use['payload'].split(','))} words" if use["payload"] else "no payload"
+    return f"{use['place']}: {use['name']}, {words}, {carried}"
+
+
+def _payload_text(payload: t.Struct | None) -> str | None:
+    """The words of a payload: programs and traces with equal texts fit."""
+    return ",".join(map(str, payload_words(payload))) if payload is not None else None
 
 
 def _estimated_frame(program: nodes.Function) -> int:
@@ -217,11 +249,14 @@ def _describe_params(params: t.Struct | None) -> Json | None:
 
 
 def _describe(emitted: Emitted, options: CompileOptions, compiler: toolchain.Compiler) -> Json:
+    uses = [_describe_trace(trace) for _, trace in traces_of(emitted.pipeline) if trace.arguments]
     return {
         "compiler": str(compiler),
         "programs": [program.name for program in emitted.pipeline.programs],
         "features": {feature.name: feature.describe() for feature in emitted.features.items},
-        "traces": [],
+        "traces": [str(use) for use in map(_trace_text, uses)],
+        "trace_uses": uses,
+        "calls_callables": bool(signatures_called(emitted.pipeline)),
         "is_any_graph": int(options.pipeline.traversable_graph_flags) == 0,
         "ignored": ["allow_clustered_geometry"] if options.pipeline.allow_clustered_geometry else [],
     }

@@ -13,6 +13,7 @@ from optixc.errors import InvalidValueError
 from optixc.host import library
 from optixc.host.context import Context
 from optixc.host.inputs import BuildInput, MotionOptions, pack_inputs
+from optixc.host.sbt_reach import parts_of
 
 
 class TraversableHandle(int):
@@ -48,6 +49,7 @@ class Accel:
         library.check(library.lib().oxrtAccelBuild(context.handle, options, packed.array, packed.count, made))
         self._accel = made[0]
         self._children = tuple(child for one in self._inputs for child in one.children())
+        self.parts = parts_of(self._inputs)
         self._inputs = ()
         self._handle = int(self._info().handle)
 
@@ -83,6 +85,7 @@ class Accel:
         packed = pack_inputs(inputs)
         library.check(library.lib().oxrtAccelUpdate(self._live(), packed.array, packed.count))
         self._children = tuple(child for one in inputs for child in one.children())
+        self.parts = parts_of(inputs)
         return self
 
     def compact(self) -> Accel:

@@ -41,6 +41,8 @@ class PipelineReport:
     bound_values: tuple[dict[str, Any], ...] = ()
     stack: dict[str, int] = field(default_factory=dict)
     is_any_graph: bool = True
+    trace_uses: tuple[dict[str, Any], ...] = ()
+    calls_callables: bool = False
 
     def __str__(self) -> str:
         source = "from the cache" if self.cache_hit else f"compiled in {self.compile_seconds:.2f} s"

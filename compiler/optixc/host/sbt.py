@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 import threading
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
 
 from optixc.enums_program import ProgramGroupKind
 from optixc.errors import InvalidValueError
-from optixc.host import library
+from optixc.host import library, sbt_check
 from optixc.host.groups import ProgramGroup, Record
 
 HEADER_SIZE = 32
@@ -36,11 +36,71 @@ class ShaderBindingTable:
         self.miss = _take_all(miss, ProgramGroupKind.MISS, "miss")
         self.hitgroup = _take_all(hitgroup, ProgramGroupKind.HITGROUP, "hitgroup")
         self.callables = _take_all(callables, ProgramGroupKind.CALLABLES, "callables")
+        self._ray_types: tuple[str, ...] = ()
         self._lock = threading.Lock()
         self._changed: set[Record] = set()
         self._packed: dict[int, _PackedTable] = {}
         for record in dict.fromkeys(self._records()):
             record.watch(self)
+
+    @classmethod
+    def from_materials(
+        cls,
+        raygen: Record,
+        ray_types: Mapping[str, Record | None],
+        materials: Sequence[Mapping[str, Record | None]],
+        callables: Sequence[Record | None] = (),
+        exception: Record | None = None,
+    ) -> ShaderBindingTable:
+        """A table laid out so that nobody has to count: `ray_types` names each ray type and gives its miss record, every material gives
+        a hit group record (or None) a ray type.
+
+        Trace ray type t with `sbt_offset=table.ray_type(t)`, `sbt_stride=table.stride`, `miss_sbt_index=table.ray_type(t)`; an instance
+        of material m, or the m-th build input or SBT record of a single GAS, has `sbt_offset=table.instance_offset(m)`.
+        """
+        if not isinstance(ray_types, Mapping) or not ray_types:
+            raise InvalidValueError("ray_types takes a dict of ray type names and their miss records, at least one")
+        names = tuple(ray_types)
+        for number, material in enumerate(materials):
+            unknown = [name for name in material if name not in ray_types]
+            if unknown:
+                raise InvalidValueError(f"materials[{number}] has a record for {unknown[0]!r}, which is no ray type; there are {names}")
+        hitgroup = [material.get(name) for material in materials for name in names]
+        made = cls(raygen, list(ray_types.values()), hitgroup, callables, exception)
+        made._ray_types = names
+        return made
+
+    @property
+    def stride(self) -> int:
+        """The sbt_stride of traces: the number of ray types."""
+        return len(self._ray_types)
+
+    def ray_type(self, name: str) -> int:
+        """The sbt_offset and miss_sbt_index of a ray type."""
+        if name not in self._ray_types:
+            raise InvalidValueError(f"this table has no ray type {name!r}; it has {self._ray_types or 'none: it was laid out by hand'}")
+        return self._ray_types.index(name)
+
+    def instance_offset(self, material: int) -> int:
+        """The sbt_offset of instances of a material."""
+        return material * max(1, self.stride)
+
+    def explain(self, pipeline: Any = None, traversable: Any = None) -> str:
+        """Prints the table and gives its text: what each record runs, its bytes, and with a pipeline and a scene who reaches it."""
+        text = sbt_check.explain(self, pipeline, traversable)
+        print(text)
+        return text
+
+    def check(self, pipeline: Any, traversable: Any = None) -> list[str]:
+        """What is wrong for the traces of this pipeline in this scene: records out of range, empty, of the wrong kind, with another
+        payload. One sentence each, an empty list if all is well. Traces whose SBT arguments are not constant are not judged."""
+        return sbt_check.problems(self, pipeline, traversable)
+
+    @staticmethod
+    def stride_of(section: Sequence[Record | None]) -> int:
+        """Bytes from one record of a section to the next."""
+        largest = max((len(record.packed()) for record in section if record is not None), default=0)
+        return -(-(HEADER_SIZE + largest) // ALIGNMENT) * ALIGNMENT
 
     def record_changed(self, record: Record) -> None:
         """A record's data changed; it is packed again before the next launch."""
@@ -107,8 +167,7 @@ class _PackedTable:
         ffi = library.ffi()
         if not records:
             return ffi.NULL, 0
-        largest = max(len(record.packed()) if record is not None else 0 for record in records)
-        stride = -(-(HEADER_SIZE + largest) // ALIGNMENT) * ALIGNMENT
+        stride = ShaderBindingTable.stride_of(records)
         memory = np.zeros(stride * len(records) + ALIGNMENT, np.uint8)
         start = -memory.ctypes.data % ALIGNMENT
         self._memory.append(memory)

@@ -22,8 +22,8 @@ namespace number {
 enum : int32_t { raygen_materials, direct_callable_plain, direct_callable_stripes, continuation_callable_glow };
 }
 
-oxrt::float3 directCall(OxrtThread& thread, uint32_t index, oxrt::float2 a0);
-oxrt::float3 continuationCall(OxrtThread& thread, uint32_t index, oxrt::float3 a0);
+oxrt::float3 directCall(OxrtThread& thread, uint32_t index, oxrt::float2 a0, oxrt::Place place = oxrt::Place::current());
+oxrt::float3 continuationCall(OxrtThread& thread, uint32_t index, oxrt::float3 a0, oxrt::Place place = oxrt::Place::current());
 
 #line 23 "shader.py"
 void raygen_materials(OxrtThread& thread) {
@@ -59,8 +59,9 @@ oxrt::float3 continuation_callable_glow(oxrt::float3 color) {
 }
 
 #line 62 "pipeline.cpp"
-oxrt::float3 directCall(OxrtThread& thread, uint32_t index, oxrt::float2 a0) {
-    const OxrtRecordHeader* record = oxrt::findCallable(thread, index, 0);
+oxrt::float3 directCall(OxrtThread& thread, uint32_t index, oxrt::float2 a0, oxrt::Place place) {
+    if (!oxrt::enterCallable<false>(thread, place)) return {};
+    const OxrtRecordHeader* record = oxrt::findCallable(thread, index, 0, place);
     switch (record ? record->programs[0] : OXRT_NO_PROGRAM) {
         case number::direct_callable_plain: return direct_callable_plain(a0);
         case number::direct_callable_stripes: return direct_callable_stripes(thread, a0, oxrt::recordData<Stripes>(*record));
@@ -68,8 +69,9 @@ oxrt::float3 directCall(OxrtThread& thread, uint32_t index, oxrt::float2 a0) {
     }
 }
 
-oxrt::float3 continuationCall(OxrtThread& thread, uint32_t index, oxrt::float3 a0) {
-    const OxrtRecordHeader* record = oxrt::findCallable(thread, index, 1);
+oxrt::float3 continuationCall(OxrtThread& thread, uint32_t index, oxrt::float3 a0, oxrt::Place place) {
+    if (!oxrt::enterCallable<false>(thread, place)) return {};
+    const OxrtRecordHeader* record = oxrt::findCallable(thread, index, 1, place);
     switch (record ? record->programs[1] : OXRT_NO_PROGRAM) {
         case number::continuation_callable_glow: return continuation_callable_glow(a0);
         default: return {};

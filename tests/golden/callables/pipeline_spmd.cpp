@@ -106,6 +106,10 @@ Wide<oxrt::float3> continuation_callable_glow_lanes([[maybe_unused]] Lanes& thre
 #line 107 "pipeline.cpp"
 Wide<oxrt::float3> directCall_lanes(Lanes& thread, Mask mask, Wide<uint32_t> index, const Wide<oxrt::float2>& a0) {
     Wide<oxrt::float3> result = oxrt::spread<LANES>(oxrt::float3{});
+    if (oxrt::isStackFull(*thread.thread)) {
+        oxrt::overflowStack<false>(thread.atLane(oxrt::firstLane(mask)), oxrt::Place::current());
+        return result;
+    }
     oxrt::RecordLanes<LANES> records;
     const Mask found = oxrt::findCallables(thread, records, mask, index, 0);
     if (oxrt::none(found)) {
@@ -121,6 +125,10 @@ Wide<oxrt::float3> directCall_lanes(Lanes& thread, Mask mask, Wide<uint32_t> ind
 
 Wide<oxrt::float3> continuationCall_lanes(Lanes& thread, Mask mask, Wide<uint32_t> index, const Wide<oxrt::float3>& a0) {
     Wide<oxrt::float3> result = oxrt::spread<LANES>(oxrt::float3{});
+    if (oxrt::isStackFull(*thread.thread)) {
+        oxrt::overflowStack<false>(thread.atLane(oxrt::firstLane(mask)), oxrt::Place::current());
+        return result;
+    }
     oxrt::RecordLanes<LANES> records;
     const Mask found = oxrt::findCallables(thread, records, mask, index, 1);
     if (oxrt::none(found)) {

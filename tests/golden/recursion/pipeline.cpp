@@ -38,6 +38,7 @@ struct RadiancePrograms : oxrt::NoPrograms {
     static constexpr bool hasClosestHit = true;
     static constexpr bool hasMiss = true;
     static constexpr bool countsDepth = true;
+    static constexpr bool checksStack = true;
     static constexpr uint32_t maxTraceDepth = 3;
     static void closestHit(oxrt::Ray& trace, Payload& payload, const OxrtRecordHeader& record);
     static void miss(oxrt::Ray& trace, Payload& payload, const OxrtRecordHeader& record);
@@ -48,6 +49,7 @@ struct LightPrograms : oxrt::NoPrograms {
     using Payload = Light;
     static constexpr bool hasMiss = true;
     static constexpr bool countsDepth = true;
+    static constexpr bool checksStack = true;
     static constexpr uint32_t maxTraceDepth = 3;
     static void miss(oxrt::Ray& trace, Payload& payload, const OxrtRecordHeader& record);
 };
@@ -108,7 +110,7 @@ void miss_visible(Light& light) {
     light.visible = true;
 }
 
-#line 112 "pipeline.cpp"
+#line 114 "pipeline.cpp"
 void RadiancePrograms::closestHit(oxrt::Ray& trace, Payload& payload, const OxrtRecordHeader& record) {
     switch (record.programs[oxrt::SLOT_CLOSESTHIT]) {
         case number::closesthit_matte: closesthit_matte(trace, payload); break;

@@ -84,6 +84,7 @@ struct RadiancePrograms : oxrt::NoPrograms {
     static constexpr bool hasClosestHit = true;
     static constexpr bool hasMiss = true;
     static constexpr bool countsDepth = true;
+    static constexpr bool checksStack = true;
     static constexpr uint32_t maxTraceDepth = 3;
     static void closestHit(oxrt::Ray& trace, Payload& payload, const OxrtRecordHeader& record);
     static void miss(oxrt::Ray& trace, Payload& payload, const OxrtRecordHeader& record);
@@ -94,6 +95,7 @@ struct LightPrograms : oxrt::NoPrograms {
     using Payload = Light;
     static constexpr bool hasMiss = true;
     static constexpr bool countsDepth = true;
+    static constexpr bool checksStack = true;
     static constexpr uint32_t maxTraceDepth = 3;
     static void miss(oxrt::Ray& trace, Payload& payload, const OxrtRecordHeader& record);
 };
@@ -169,7 +171,7 @@ void miss_visible_lanes([[maybe_unused]] Lanes& thread, [[maybe_unused]] Mask ma
     oxrt::assign(mask, light.visible, true);
 }
 
-#line 173 "pipeline.cpp"
+#line 175 "pipeline.cpp"
 void RadianceProgramsLanes::closestHit(Rays& trace, Mask mask, Payload& payload) {
     const Wide<int32_t> program = oxrt::recordPrograms(trace.records, mask, oxrt::SLOT_CLOSESTHIT);
     if (const Mask own = mask & (program == int32_t(number::closesthit_matte)); oxrt::any(own))
