@@ -22,8 +22,8 @@ Nodes = list[dict[str, Any]]
 
 def random_motion(random: np.random.Generator, keys: int) -> dict[str, Any]:
     """Options with any range and vanish flags."""
-    begin = float(random.uniform(-1, 1))
-    return {"numKeys": keys, "flags": int(random.choice([0, 0, 0, 1, 2, 3])), "timeBegin": begin, "timeEnd": begin + float(random.uniform(0.2, 2))}
+    begin, length = random.uniform(-1, 1), random.uniform(0.2, 2)
+    return {"numKeys": keys, "flags": int(random.choice([0, 0, 0, 1, 2, 3])), "timeBegin": float(begin), "timeEnd": float(begin + length)}
 
 
 def random_structure(random: np.random.Generator, name: str, count: int) -> dict[str, Any]:
