@@ -34,6 +34,7 @@ from optixc.host.stack_sizes import (
     util_compute_stack_sizes_simple_path_tracer,
 )
 from optixc.host.structs import attributes, copy, payload, payload_word, struct
+from optixc.host.tasks import Task
 from optixc.host.texture import Texture2D
 from optixc.host.transforms import Transform
 from optixc.host.vectors import (
@@ -103,6 +104,7 @@ __all__ = [
     "Record",
     "ShaderBindingTable",
     "StackSizes",
+    "Task",
     "Texture",
     "Texture2D",
     "ToolchainError",

@@ -11,14 +11,15 @@ from optixc import driver
 from optixc.cache import Cache
 from optixc.enums_program import ProgramGroupKind
 from optixc.enums_scene import BuildFlags
-from optixc.errors import InvalidValueError
+from optixc.errors import DiskCacheInvalidPathError, DiskCachePermissionError, InvalidValueError, OptixError
 from optixc.host import transforms
 from optixc.host.accel import Accel
 from optixc.host.bound_values import NO_ANNOTATION, merge, plain_values
-from optixc.host.context import LOG_PRINT, LOG_WARNING, Context, LogCallback
+from optixc.host.context import LOG_ERROR, LOG_PRINT, LOG_WARNING, Context, LogCallback
 from optixc.host.groups import Module, Program, ProgramGroup
 from optixc.host.inputs import BuildInput, MotionOptions
 from optixc.host.pipeline import Pipeline
+from optixc.host.tasks import Task, TaskModule
 from optixc.options import CompileOptions, PipelineCompileOptions, Simd
 
 _Slot = Program | None
@@ -60,7 +61,80 @@ class DeviceContext(Context):
         driver.check_bound_values(unit, {name: bound.value for name, bound in values.items()})
         return Module(unit, unit.programs, values)
 
+    def module_create_with_tasks(
+        self,
+        source: ModuleType | str | Path | Sequence[Any],
+        *,
+        include_dirs: Sequence[str | Path] = (),
+        bound_values: Mapping[str, Any] | None = None,
+    ) -> tuple[TaskModule, Task]:
+        """A module that is compiled when its task is executed, on any thread; `get_compilation_state()` tells how far it is."""
+        _ = self.handle
+        values = plain_values(bound_values)
+        folders = [Path(folder) for folder in include_dirs]
+
+        def compile_source() -> tuple[driver.Unit, list[dict[str, Any]]]:
+            unit = self._open(source, folders)
+            driver.check_bound_values(unit, {name: bound.value for name, bound in values.items()})
+            return unit, unit.programs
+
+        module = TaskModule(compile_source, values)
+        return module, Task(module)
+
+    def set_cache_enabled(self, is_enabled: bool) -> None:
+        """Switches the cache folder on or off; OPTIXC_CACHE_MAXSIZE=0 keeps it off. Raises if nothing can be written there."""
+        if not is_enabled:
+            self.cache.is_on = False
+            return
+        self._use_cache()
+
+    def get_cache_enabled(self) -> bool:
+        """Whether compiled pipelines are kept."""
+        return self.cache.enabled
+
+    def set_cache_location(self, location: str | Path) -> None:
+        """Another folder for compiled pipelines. Raises if the cache is on and nothing can be written there, and switches it off."""
+        if not str(location):
+            raise InvalidValueError("the cache location is empty; give a folder")
+        self.cache.folder = Path(location).absolute()
+        if self.cache.enabled:
+            self._use_cache()
+
+    def get_cache_location(self) -> str:
+        """The folder, empty if the environment switched the cache off."""
+        return "" if self.cache.is_forced_off else str(self.cache.folder)
+
+    def set_cache_database_sizes(self, low_water_mark: int, high_water_mark: int) -> None:
+        """Bytes: above the high mark the entries unused for longest go, down to the low one; 0 for either keeps everything."""
+        for name, value in (("low_water_mark", low_water_mark), ("high_water_mark", high_water_mark)):
+            if not isinstance(value, int) or isinstance(value, bool) or value < 0:
+                raise InvalidValueError(f"{name} must be at least 0 bytes, not {value!r}")
+        if low_water_mark and high_water_mark and high_water_mark < low_water_mark:
+            raise InvalidValueError(f"the high water mark {high_water_mark} is below the low one, {low_water_mark}")
+        self.cache.set_sizes(low_water_mark, high_water_mark)
+
+    def get_cache_database_sizes(self) -> tuple[int, int]:
+        """The low and the high water mark in bytes; both 0 if the environment switched the cache off."""
+        return (0, 0) if self.cache.is_forced_off else (self.cache.low, self.cache.limit)
+
+    def _use_cache(self) -> None:
+        try:
+            self.cache.switch_on()
+        except PermissionError as error:
+            raise DiskCachePermissionError(f"the cache folder {self.cache.folder} cannot be written; choose another") from error
+        except OSError as error:
+            reason = error.strerror or error
+            raise DiskCacheInvalidPathError(f"the cache folder {self.cache.folder} cannot be made ({reason}); give another") from error
+
     def _open(self, source: Any, include_dirs: list[Path]) -> driver.Unit:
+        """The front end's work, its errors told to the log callback as well."""
+        try:
+            return self._open_source(source, include_dirs)
+        except OptixError as error:
+            self.tell(LOG_ERROR, "COMPILER", str(error))
+            raise
+
+    def _open_source(self, source: Any, include_dirs: list[Path]) -> driver.Unit:
         if isinstance(source, ModuleType):
             path = getattr(source, "__file__", None)
             if path is None:
@@ -116,6 +190,9 @@ class DeviceContext(Context):
             bound_values={name: one.value for name, one in bound.items()},
         )
         built = driver.build(units, [program.name for program in used], chosen, self.cache)
+        seconds = built.report["compile_seconds"]
+        how = "taken from the cache" if built.report["cache_hit"] else f"compiled in {seconds:.2f} s"
+        self.log(LOG_PRINT, "COMPILER", f"pipeline of {len(used)} programs {how}")
         for one in built.report["bound_values"]:
             annotation = bound[one["name"]].annotation or NO_ANNOTATION
             self.log(LOG_PRINT, "COMPILER", f"bound value {one['name']} = {one['value']} ({annotation}) replaces {one['reads']} reads")

@@ -64,13 +64,38 @@ class Cache:
     def __init__(self, folder: Path | None, warn: Callable[[str], None], limit: int | None = None) -> None:
         self.folder = (folder or default_folder()).absolute()
         self.limit = max_size() if limit is None else limit
+        self.low = self.limit // 2
+        self.is_forced_off = self.limit == 0
+        self.is_on = not self.is_forced_off
         self._warn = warn
         self._warned = False
         self._loose: list[tempfile.TemporaryDirectory[str]] = []
 
     @property
     def enabled(self) -> bool:
-        return self.limit > 0
+        return self.is_on and not self.is_forced_off
+
+    @property
+    def collects(self) -> bool:
+        """Whether entries are ever dropped."""
+        return self.limit > 0 and self.low > 0
+
+    def switch_on(self) -> None:
+        """Uses the folder from now on, unless the environment forbids it. Raises OSError if nothing can be written there."""
+        if self.is_forced_off:
+            return
+        try:
+            self.folder.mkdir(parents=True, exist_ok=True)
+            with tempfile.NamedTemporaryFile(dir=self.folder, prefix="new-"):
+                self.is_on = True
+        except OSError:
+            self.is_on = False
+            raise
+
+    def set_sizes(self, low: int, high: int) -> None:
+        """Water marks in bytes: above `high` the oldest entries go until `low` is reached; a zero for either keeps everything."""
+        if not self.is_forced_off:
+            self.low, self.limit = low, high
 
     @property
     def memory(self) -> Path | None:
@@ -137,7 +162,7 @@ class Cache:
         made = scratch / f"{key}.so"
         produce(made)
         size = made.stat().st_size
-        if size > self.limit:
+        if self.collects and size > self.limit:
             self._say(f"a compiled pipeline of {size} bytes is larger than the cache limit of {self.limit} and is not kept")
             loose = tempfile.TemporaryDirectory(prefix="optixc-")
             self._loose.append(loose)
@@ -167,12 +192,12 @@ class Cache:
                 status = item.stat(follow_symlinks=False)
                 files.append((item.name.split("-")[0].split(".")[0], status.st_mtime_ns, status.st_size, item.path))
         total = sum(size for _, _, size, _ in files)
-        if total + incoming <= self.limit:
+        if not self.collects or total + incoming <= self.limit:
             return
         last_use: dict[str, int] = {}
         for key, used, _, _ in files:
             last_use[key] = max(used, last_use.get(key, 0))
-        goal = max(self.limit // 2 - incoming, 0)
+        goal = max(self.low - incoming, 0)
         for key in sorted(last_use, key=lambda key: last_use[key]):
             if total <= goal:
                 return

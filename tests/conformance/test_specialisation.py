@@ -90,7 +90,7 @@ def test_T048_the_log_names_each_bound_value() -> None:
     messages: list[tuple[int, str, str]] = []
     context = ox.DeviceContext(log_callback=lambda level, tag, text: messages.append((level, tag, text)))
     make(context, bound_values={"k": ox.BoundValue(3, annotation="samples"), "light.enabled": True})
-    told = [text for level, tag, text in messages if tag == "COMPILER" and level == 4]
+    told = [text for level, tag, text in messages if (level, tag) == (4, "COMPILER") and text.startswith("bound value")]
     assert told == ["bound value k = 3 (samples) replaces 1 reads", "bound value light.enabled = True (No annotation) replaces 1 reads"]
 
 

@@ -9,8 +9,10 @@ import warnings
 from collections.abc import Callable
 from typing import Any
 
+from optixc.enums_program import DeviceProperty
 from optixc.errors import InvalidDeviceContextError, InvalidValueError
 from optixc.host import library
+from optixc.host.properties import property_value
 from optixc.installation import embree_path
 
 LogCallback = Callable[[int, str, str], None]
@@ -43,8 +45,7 @@ class Context:
         if log_level not in range(5):
             raise InvalidValueError(f"log_level must be 0 to 4, not {log_level!r}")
         self.validation = bool(validation)
-        self._log_callback = log_callback
-        self._log_level = log_level
+        self._log: tuple[LogCallback | None, int] = (log_callback, log_level)
         self._generation = library.process_generation()
         self._create(threads or 0)
 
@@ -55,7 +56,7 @@ class Context:
         self._embree = ffi.NULL if embree is None else ffi.new("char[]", embree.encode())
         options = ffi.new("OxrtContextOptions*")
         options.logCallback = self._c_callback
-        options.logCallbackLevel = self._log_level
+        options.logCallbackLevel = self._log[1]
         options.validation = self.validation
         options.threads = threads
         options.embreePath = self._embree
@@ -92,27 +93,42 @@ class Context:
         }
 
     def set_log_callback(self, log_callback: LogCallback | None, level: int = LOG_PRINT) -> None:
-        """Replaces the callback and the level."""
-        self._log_callback, self._log_level = log_callback, level
+        """Replaces the callback and the level, both at once; None for no callback, level 0 for silence."""
+        if log_callback is not None and not callable(log_callback):
+            raise InvalidValueError(f"log_callback must be callable or None, not {log_callback!r}")
+        if level not in range(5):
+            raise InvalidValueError(f"the log level must be 0 to 4, not {level!r}")
+        self._log = (log_callback, level)
         library.check(library.lib().oxrtContextSetLogCallback(self.handle, self._c_callback, library.ffi().NULL, level))
 
     def log(self, level: int, tag: str, message: str) -> None:
         """Says something: to the callback, else warnings and errors as Python warnings."""
-        if level > self._log_level:
+        callback, highest = self._log
+        if level > highest:
             return
-        if self._log_callback is None:
+        if callback is None:
             if level <= LOG_WARNING:
                 warnings.warn(message, OptixcWarning, stacklevel=4)
             return
         try:
-            self._log_callback(level, tag, message)
+            callback(level, tag, message)
         except Exception:
             print("optixc: exception in a log callback, ignored:", file=sys.stderr)
             traceback.print_exc()
 
+    def tell(self, level: int, tag: str, message: str) -> None:
+        """Says something that the caller learns in another way too: to the callback only."""
+        if self._log[0] is not None:
+            self.log(level, tag, message)
+
+    def get_property(self, wanted: DeviceProperty | int) -> int:
+        """The value of a device property: limits and abilities."""
+        _ = self.handle
+        return property_value(wanted)
+
     def _on_log(self, level: int, tag: Any, message: Any, data: Any) -> None:
         text = library.ffi().string(message).decode("utf-8", "replace")
-        if self._log_callback is not None:
+        if self._log[0] is not None:
             self.log(level, library.ffi().string(tag).decode("utf-8", "replace"), text)
         elif level <= LOG_WARNING:
             # Warnings may be turned into exceptions, which must not cross C; the logging module never raises.

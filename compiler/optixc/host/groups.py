@@ -7,8 +7,8 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from optixc.enums_program import ProgramGroupKind
-from optixc.errors import InvalidValueError
+from optixc.enums_program import ModuleCompileState, ProgramGroupKind
+from optixc.errors import InvalidOperationError, InvalidValueError
 from optixc.host import structs
 from optixc.host.stack_sizes import StackSizes, sizes_of
 
@@ -49,9 +49,20 @@ class Module(Mapping[str, Program]):
     def __init__(self, unit: Any, programs: list[dict[str, Any]], bound_values: Mapping[str, Any] | None = None) -> None:
         self.unit = unit
         self.bound_values = dict(bound_values or {})
+        self._is_destroyed = False
         self._programs = {one["name"]: Program(self, one["name"], one["record"], one["record_name"], one["stack"]) for one in programs}
 
+    def get_compilation_state(self) -> ModuleCompileState:
+        """COMPLETED; see `module_create_with_tasks`."""
+        return ModuleCompileState.COMPLETED
+
+    def destroy(self) -> None:
+        """The module gives no programs any more; groups and pipelines made from it go on."""
+        self._is_destroyed = True
+
     def __getitem__(self, name: str) -> Program:
+        if self._is_destroyed:
+            raise InvalidOperationError("this module was destroyed; create it again")
         found = self._programs.get(name)
         if found is None:
             raise InvalidValueError(f"the module has no program {name!r}; it has {', '.join(self._programs) or 'none'}")

@@ -1,0 +1,220 @@
+"""Areas A to D: context, properties, log, cache settings, modules and their tasks."""
+
+from __future__ import annotations
+
+import threading
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from harness import SHADERS
+from shaders import bound as shader
+
+import optixc as ox
+
+SHADER = SHADERS / "bound.py"
+FAULTY = "import optixc as ox\n\n\n@ox.program\ndef __raygen__r():\n    x = ox.get_primitive_index()\n"
+LIGHT = shader.Light((1.0, 0.5, 0.0), False)
+
+
+def run(context: ox.DeviceContext, module: Any) -> float:
+    group = context.program_group_create(raygen=module["__raygen__branch"])
+    out = np.zeros(1, np.float32)
+    context.pipeline_create([group]).launch(shader.Params(out=out, k=3, light=LIGHT), ox.ShaderBindingTable(raygen=group.record()), 1)
+    return float(out[0])
+
+
+def test_T001_a_context_without_options() -> None:
+    context = ox.DeviceContext()
+    assert not context.validation
+    assert context.get_cache_enabled()
+
+
+PROPERTIES = {0x2001: 31, 0x2002: 31, 0x2003: 1 << 29, 0x2004: 1 << 28, 0x2006: (1 << 28) - 1, 0x2007: 8, 0x2008: 1 << 24,
+              0x2009: (1 << 28) - 1}
+
+
+def test_T003_properties() -> None:
+    context = ox.DeviceContext()
+    assert {number: context.get_property(number) for number in PROPERTIES} == PROPERTIES
+    assert context.get_property(ox.DeviceProperty.LIMIT_MAX_TRACE_DEPTH) == 31
+    assert all(isinstance(context.get_property(one), int) for one in ox.DeviceProperty)
+    with pytest.raises(ox.InvalidValueError, match="is no device property"):
+        context.get_property(7)
+
+
+def test_T004_a_destroyed_context_takes_everything_with_it() -> None:
+    context = ox.DeviceContext()
+    module = context.module_create(SHADER)
+    run(context, module)
+    group = context.program_group_create(raygen=module["__raygen__branch"])
+    pipeline = context.pipeline_create([group])
+    context.destroy()
+    out = np.zeros(1, np.float32)
+    for use in (lambda: pipeline.launch(shader.Params(out=out, k=3, light=LIGHT), ox.ShaderBindingTable(raygen=group.record()), 1),
+                lambda: context.module_create(SHADER), lambda: context.pipeline_create([group]), lambda: context.get_property(0x2001)):
+        with pytest.raises(ox.InvalidDeviceContextError, match="destroyed"):
+            use()
+
+
+def test_T008_levels_of_the_log(tmp_path: Path) -> None:
+    path = tmp_path / "faulty.py"
+    path.write_text(FAULTY)
+    for level, expected in ((0, set()), (1, {1}), (2, {1, 2}), (3, {1, 2, 3}), (4, {1, 2, 3, 4})):
+        heard: list[int] = []
+        context = ox.DeviceContext(log_callback=lambda level, tag, text, heard=heard: heard.append(level))
+        context.set_log_callback(lambda level, tag, text, heard=heard: heard.append(level), level)
+        heard.clear()
+        for told in (1, 2, 3, 4):
+            context.log(told, "TEST", "text")
+        assert set(heard) == expected
+        heard.clear()
+        with pytest.raises(ox.CompileError):
+            context.module_create(path)
+        assert (2 in heard) == (level >= 2)
+
+
+def test_T009_callbacks_are_swapped_whole(tmp_path: Path) -> None:
+    path = tmp_path / "faulty.py"
+    path.write_text(FAULTY)
+    context = ox.DeviceContext(log_callback=lambda level, tag, text: None)
+    context.set_log_callback(None)
+    with pytest.raises(ox.CompileError):
+        context.module_create(path)
+    with pytest.raises(ox.InvalidValueError):
+        context.set_log_callback("print")
+    with pytest.raises(ox.InvalidValueError):
+        context.set_log_callback(None, 5)
+
+
+def test_T018_the_environment_beats_the_calls(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    monkeypatch.setenv("OPTIXC_CACHE_MAXSIZE", "0")
+    context = ox.DeviceContext(cache_dir=tmp_path)
+    context.set_cache_enabled(True)
+    assert (context.get_cache_enabled(), context.get_cache_location(), context.get_cache_database_sizes()) == (False, "", (0, 0))
+    run(context, context.module_create(SHADER))
+    assert list(tmp_path.iterdir()) == []
+    monkeypatch.setenv("OPTIXC_CACHE_MAXSIZE", "1000000")
+    assert ox.DeviceContext(cache_dir=tmp_path).get_cache_database_sizes() == (500000, 1000000)
+    for ignored in ("-5", "abc"):
+        monkeypatch.setenv("OPTIXC_CACHE_MAXSIZE", ignored)
+        assert ox.DeviceContext(cache_dir=tmp_path).get_cache_database_sizes() == (1 << 29, 1 << 30)
+
+
+def test_T019_water_marks() -> None:
+    context = ox.DeviceContext()
+    with pytest.raises(ox.InvalidValueError, match="below the low one"):
+        context.set_cache_database_sizes(10, 5)
+    context.set_cache_database_sizes(0, 5)
+    assert context.get_cache_database_sizes() == (0, 5)
+    with pytest.raises(ox.InvalidValueError, match="at least 0"):
+        context.set_cache_database_sizes(-1, 5)
+
+
+def test_T020_a_location_that_cannot_be_made(tmp_path: Path) -> None:
+    file = tmp_path / "file"
+    file.write_text("")
+    context = ox.DeviceContext(cache_dir=tmp_path / "good")
+    with pytest.raises(ox.DiskCacheInvalidPathError, match="cannot be made"):
+        context.set_cache_location(file / "inside")
+    assert not context.get_cache_enabled()
+    assert run(context, context.module_create(SHADER)) > 1000
+    context.set_cache_enabled(False)
+    context.set_cache_location(file / "inside")
+    with pytest.raises(ox.DiskCacheInvalidPathError):
+        context.set_cache_enabled(True)
+    context.set_cache_location(tmp_path / "other")
+    context.set_cache_enabled(True)
+    assert context.get_cache_location() == str(tmp_path / "other")
+    run(context, context.module_create(SHADER))
+    assert any((tmp_path / "other").glob("*.so"))
+
+
+def test_T022_the_folder_stays_below_the_high_mark(tmp_path: Path) -> None:
+    context = ox.DeviceContext(cache_dir=tmp_path)
+    run(context, context.module_create(SHADER))
+    size = sum(path.stat().st_size for path in tmp_path.iterdir() if path.name != "compilers.json")
+    context.set_cache_database_sizes(2 * size, 3 * size)
+    group = context.program_group_create(raygen=context.module_create(SHADER)["__raygen__branch"])
+    for k in range(6):
+        context.pipeline_create([group], bound_values={"k": k})
+        assert sum(path.stat().st_size for path in tmp_path.iterdir()) <= 3.2 * size
+    heard: list[str] = []
+    context.set_log_callback(lambda level, tag, text: heard.append(text))
+    context.set_cache_database_sizes(10, 10)
+    context.pipeline_create([group], debug=True)
+    assert any("larger than the cache limit" in text for text in heard)
+
+
+def test_T036_a_destroyed_module_leaves_pipelines_alone() -> None:
+    context = ox.DeviceContext()
+    module = context.module_create(SHADER)
+    group = context.program_group_create(raygen=module["__raygen__branch"])
+    pipeline = context.pipeline_create([group])
+    module.destroy()
+    out = np.zeros(1, np.float32)
+    pipeline.launch(shader.Params(out=out, k=3, light=LIGHT), ox.ShaderBindingTable(raygen=group.record()), 1)
+    assert out[0] > 1000
+    with pytest.raises(ox.InvalidOperationError, match="was destroyed"):
+        module["__raygen__branch"]
+
+
+def test_T037_T038_states_of_a_module_with_tasks(tmp_path: Path) -> None:
+    context = ox.DeviceContext()
+    states = ox.ModuleCompileState
+    module, task = context.module_create_with_tasks(SHADER)
+    assert module.get_compilation_state() is states.NOT_STARTED
+    with pytest.raises(ox.InvalidOperationError, match="execute its tasks"):
+        module["__raygen__branch"]
+    pending = [task]
+    while pending:
+        pending += pending.pop().execute(1)
+    assert module.get_compilation_state() is states.COMPLETED
+    assert run(context, module) == run(context, context.module_create(SHADER))
+    assert context.module_create(SHADER).get_compilation_state() is states.COMPLETED
+    path = tmp_path / "faulty.py"
+    path.write_text(FAULTY)
+    faulty, task = context.module_create_with_tasks(path)
+    with pytest.raises(ox.CompileError, match="get_primitive_index"):
+        task.execute()
+    assert faulty.get_compilation_state() is states.FAILED
+    assert task.execute() == []
+    faulty.destroy()
+
+
+def test_T038_tasks_of_many_modules_on_many_threads() -> None:
+    context = ox.DeviceContext()
+    made = [context.module_create_with_tasks(SHADER) for _ in range(8)]
+    threads = [threading.Thread(target=task.execute) for _, task in reversed(made)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    assert {next(iter(module)) for module, _ in made} == {"__raygen__branch"}
+
+
+def test_T039_a_module_whose_task_executes_is_not_destroyed() -> None:
+    module, _ = ox.DeviceContext().module_create_with_tasks(SHADER)
+    entered, leave = threading.Event(), threading.Event()
+
+    def slow() -> Any:
+        entered.set()
+        leave.wait(10)
+        raise ox.InvalidValueError("stop")
+
+    module._open = slow
+
+    def execute() -> None:
+        with pytest.raises(ox.InvalidValueError, match="stop"):
+            module.compile()
+
+    thread = threading.Thread(target=execute)
+    thread.start()
+    assert entered.wait(10)
+    assert module.get_compilation_state() is ox.ModuleCompileState.STARTED
+    with pytest.raises(ox.IllegalDuringTaskExecuteError):
+        module.destroy()
+    leave.set()
+    thread.join()
+    module.destroy()
