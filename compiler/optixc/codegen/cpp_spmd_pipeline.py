@@ -17,7 +17,7 @@ from optixc.codegen.cpp_spmd_clones import Clones, Key
 from optixc.codegen.cpp_spmd_expr import PAYLOAD_GETTER, PAYLOAD_SETTER
 from optixc.codegen.cpp_spmd_types import WideTypes
 from optixc.codegen.needs import EXCEPTION_FLAG_STACK_OVERFLOW, options_of
-from optixc.codegen.program_classes import ProgramClass, callables_nest, known_flags, payload_of, reachable_functions, traces_of
+from optixc.codegen.program_classes import ProgramClass, callables_nest, payload_of, reachable_functions
 from optixc.ir.intrinsic_rows import INTRINSICS
 from optixc.ir.intrinsics import State
 from optixc.ir.nodes import CallCallable, CallIntrinsic, Function, IntrinsicCall, ParameterRole, Pipeline, Trace
@@ -28,7 +28,6 @@ from optixc.passes.callables import CallableSignature, callables_with, signature
 from optixc.passes.features import Features
 from optixc.passes.uniformity import Clone
 
-_DISABLE_ANYHIT, _ENFORCE_ANYHIT, _CULL_ANY = 1, 2, 0xF0
 _ALSO_SCALAR = (ProgramKind.ANYHIT, ProgramKind.INTERSECTION)
 
 
@@ -72,7 +71,6 @@ class SpmdFile(PipelineFile):
         self._wide.definitions(self._writer)
         self._declare_programs()
         scalar = self._scalar_functions()
-        singly = self._traced_singly()
         self._declare_functions([function for function in scalar if function.kind is None], ())
         for programs in self._classes.values():
             self._declare_lane_class(programs)
@@ -88,8 +86,7 @@ class SpmdFile(PipelineFile):
         for clone in order:
             LaneFunction(self._writer, clone, self._wide, self._clones, self._signatures, options).write()
         for programs in self._classes.values():
-            if programs in singly:
-                self._dispatch.define_class(replace(programs, closesthit=(), miss=()))
+            self._dispatch.define_class(replace(programs, closesthit=(), miss=()))
             self._define_lane_class(programs)
         for signature in signatures_called(self._pipeline):
             self._define_callable(signature)
@@ -124,21 +121,12 @@ class SpmdFile(PipelineFile):
 
     def _scalar_functions(self) -> list[Function]:
         """Any-hit, intersection and exception programs, and the helpers that they or uniform calls need."""
-        single = {p.name for programs in self._traced_singly() for p in (*programs.anyhit, *programs.intersection)}
+        single = {p.name for programs in self._classes.values() for p in (*programs.anyhit, *programs.intersection)}
         throwing = {p.name for p in self._pipeline.programs if p.kind is ProgramKind.EXCEPTION and self._throws}
         programs = [program for program in self._pipeline.programs if program.name in single | throwing]
         needed = {f.name for program in programs for f in reachable_functions(self._pipeline, program)} | set(self._clones.scalar)
         helpers = [helper for helper in callees_first(self._pipeline.helpers) if helper.name in needed]
         return [*helpers, *programs]
-
-    def _traced_singly(self) -> list[ProgramClass]:
-        """The classes of which some trace may go ray by ray: those whose candidates on triangles may be judged."""
-        filtered = {
-            trace.payload_type
-            for _, trace in traces_of(self._pipeline)
-            if _filters(known_flags(trace), bool(self._classes[trace.payload_type].anyhit))
-        }
-        return [programs for payload, programs in self._classes.items() if payload in filtered]
 
     # ---- classes of programs -------------------------------------------------------------------------------------------------
 
@@ -292,14 +280,6 @@ def _present(programs: ProgramClass) -> list[tuple[ProgramKind, tuple[Function, 
         (ProgramKind.MISS, programs.miss),
     )
     return [(kind, functions) for kind, functions in kinds if functions]
-
-
-def _filters(flags: int | None, has_anyhit: bool) -> bool:
-    """Whether a trace with these flags (None: not known) may call the filter of built-in primitives: see FlagTraits."""
-    if flags is None:
-        return True
-    runs_anyhit = bool(flags & _ENFORCE_ANYHIT) or not flags & _DISABLE_ANYHIT
-    return bool(flags & _CULL_ANY) or (has_anyhit and runs_anyhit)
 
 
 def _uses_payload_words(pipeline: Pipeline, program: Function) -> bool:
