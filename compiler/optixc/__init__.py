@@ -6,7 +6,7 @@ shader.
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from optixc import enums, errors
 from optixc.api import DeviceContext
@@ -182,9 +182,13 @@ __all__ += enums.__all__
 __all__ += errors.__all__
 
 
-def __getattr__(name: str) -> Any:
-    found = device_function(name)
-    if found is None:
-        raise AttributeError(f"module 'optixc' has no attribute {name!r}")
-    globals()[name] = found
-    return found
+if TYPE_CHECKING:
+    from optixc.device_functions import *
+else:
+
+    def __getattr__(name: str) -> Any:
+        found = device_function(name)
+        if found is None:
+            raise AttributeError(f"module 'optixc' has no attribute {name!r}")
+        globals()[name] = found
+        return found

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import Any, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
@@ -76,15 +76,30 @@ class float3x3(Matrix):
     __slots__ = ()
     rows, columns = 3, 3
 
+    if TYPE_CHECKING:
+
+        def __set__(self, instance: Any, value: Any) -> None:
+            """A field takes anything that numpy makes an array of this shape."""
+
 
 class float3x4(Matrix):
     __slots__ = ()
     rows, columns = 3, 4
 
+    if TYPE_CHECKING:
+
+        def __set__(self, instance: Any, value: Any) -> None:
+            """A field takes anything that numpy makes an array of this shape."""
+
 
 class float4x4(Matrix):
     __slots__ = ()
     rows, columns = 4, 4
+
+    if TYPE_CHECKING:
+
+        def __set__(self, instance: Any, value: Any) -> None:
+            """A field takes anything that numpy makes an array of this shape."""
 
 
 _CLASSES: dict[tuple[int, int], type[Matrix]] = {(kind.rows, kind.columns): kind for kind in (float3x3, float3x4, float4x4)}

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import operator
 from collections.abc import Callable, Iterator
-from typing import Any, ClassVar, Self
+from typing import TYPE_CHECKING, Any, ClassVar, Self
 
 import numpy as np
 
@@ -115,6 +115,21 @@ class Vector:
     def __rtruediv__(self, other: Any) -> Any:
         return self._binary(other, np.true_divide, swapped=True)
 
+    def __rfloordiv__(self, other: Any) -> Any:
+        return self._binary(other, np.floor_divide, swapped=True)
+
+    def __rmod__(self, other: Any) -> Any:
+        return self._binary(other, np.remainder, swapped=True)
+
+    def __rand__(self, other: Any) -> Any:
+        return self._binary(other, np.bitwise_and, swapped=True)
+
+    def __ror__(self, other: Any) -> Any:
+        return self._binary(other, np.bitwise_or, swapped=True)
+
+    def __rxor__(self, other: Any) -> Any:
+        return self._binary(other, np.bitwise_xor, swapped=True)
+
     def __neg__(self) -> Self:
         return type(self)(*np.negative(self.__array__()).tolist())
 
@@ -195,145 +210,9 @@ _ELEMENTS: dict[str, Any] = {
 }
 
 
-class bool2(Vector):
-    __slots__ = ()
-
-
-class bool3(Vector):
-    __slots__ = ()
-
-
-class bool4(Vector):
-    __slots__ = ()
-
-
-class char2(Vector):
-    __slots__ = ()
-
-
-class char3(Vector):
-    __slots__ = ()
-
-
-class char4(Vector):
-    __slots__ = ()
-
-
-class uchar2(Vector):
-    __slots__ = ()
-
-
-class uchar3(Vector):
-    __slots__ = ()
-
-
-class uchar4(Vector):
-    __slots__ = ()
-
-
-class short2(Vector):
-    __slots__ = ()
-
-
-class short3(Vector):
-    __slots__ = ()
-
-
-class short4(Vector):
-    __slots__ = ()
-
-
-class ushort2(Vector):
-    __slots__ = ()
-
-
-class ushort3(Vector):
-    __slots__ = ()
-
-
-class ushort4(Vector):
-    __slots__ = ()
-
-
-class int2(Vector):
-    __slots__ = ()
-
-
-class int3(Vector):
-    __slots__ = ()
-
-
-class int4(Vector):
-    __slots__ = ()
-
-
-class uint2(Vector):
-    __slots__ = ()
-
-
-class uint3(Vector):
-    __slots__ = ()
-
-
-class uint4(Vector):
-    __slots__ = ()
-
-
-class longlong2(Vector):
-    __slots__ = ()
-
-
-class longlong3(Vector):
-    __slots__ = ()
-
-
-class longlong4(Vector):
-    __slots__ = ()
-
-
-class ulonglong2(Vector):
-    __slots__ = ()
-
-
-class ulonglong3(Vector):
-    __slots__ = ()
-
-
-class ulonglong4(Vector):
-    __slots__ = ()
-
-
-class half2(Vector):
-    __slots__ = ()
-
-
-class half3(Vector):
-    __slots__ = ()
-
-
-class half4(Vector):
-    __slots__ = ()
-
-
-class float2(Vector):
-    __slots__ = ()
-
-
-class float3(Vector):
-    __slots__ = ()
-
-
-class float4(Vector):
-    __slots__ = ()
-
-
-class double2(Vector):
-    __slots__ = ()
-
-
-class double3(Vector):
-    __slots__ = ()
-
-
-class double4(Vector):
-    __slots__ = ()
+if TYPE_CHECKING:
+    from optixc.host.vector_types import *
+else:
+    for _family in _ELEMENTS:
+        for _size in (2, 3, 4):
+            globals()[f"{_family}{_size}"] = type(f"{_family}{_size}", (Vector,), {"__slots__": (), "__module__": __name__})
