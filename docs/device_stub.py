@@ -173,5 +173,6 @@ def vector_types_stub() -> str:
         for size in (2, 3, 4):
             components = "".join(f"    {letter}: {scalar}\n" for letter in "xyzw"[:size])
             given = f"Vector | Sequence[float] | _Array | {'bool' if scalar == 'bool' else 'float'}"
-            parts.append(f"\nclass {family}{size}(Vector):\n{components}    def __set__(self, instance: Any, value: {given}) -> None: ...\n")
+            setter = f"    def __set__(self, instance: Any, value: {given}) -> None: ...\n"
+            parts.append(f"\nclass {family}{size}(Vector):\n{components}{setter}")
     return "".join(parts)

@@ -6,6 +6,7 @@ shader.
 
 from __future__ import annotations
 
+from math import e, inf, nan, pi, tau
 from typing import TYPE_CHECKING, Any
 
 from optixc import enums, errors
@@ -123,6 +124,7 @@ __all__ = [
     "double2",
     "double3",
     "double4",
+    "e",
     "float2",
     "float3",
     "float3x3",
@@ -135,6 +137,7 @@ __all__ = [
     "half2",
     "half3",
     "half4",
+    "inf",
     "int2",
     "int3",
     "int4",
@@ -147,14 +150,17 @@ __all__ = [
     "longlong2",
     "longlong3",
     "longlong4",
+    "nan",
     "payload",
     "payload_word",
+    "pi",
     "program",
     "read_image",
     "short2",
     "short3",
     "short4",
     "struct",
+    "tau",
     "uchar2",
     "uchar3",
     "uchar4",
@@ -183,7 +189,7 @@ __all__ += errors.__all__
 
 
 if TYPE_CHECKING:
-    from optixc.device_functions import *
+    from optixc.device_functions import *  # noqa: F403
 else:
 
     def __getattr__(name: str) -> Any:

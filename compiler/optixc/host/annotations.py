@@ -7,7 +7,7 @@ handles.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Annotated, Any, Generic, TypeVar
+from typing import TYPE_CHECKING, Annotated, Any, Generic, TypeVar, overload
 
 import numpy as np
 
@@ -36,18 +36,27 @@ class FixedArrayAnnotation:
 if TYPE_CHECKING:
     T = TypeVar("T")
 
-    class _View(Generic[T]):
+    class Array(np.ndarray[Any, Any], Generic[T]):
         """What a shader may do with an array; the host gives a numpy array."""
 
-        shape: tuple[int, ...]
+        @overload  # type: ignore[override]
+        def __getitem__(self, index: int | tuple[int, ...]) -> T: ...
+        @overload
+        def __getitem__(self, index: Any) -> np.ndarray[Any, Any]: ...
+        def __getitem__(self, index: Any) -> Any: ...
+        def __setitem__(self, index: Any, value: T) -> None: ...  # type: ignore[override]
+        def __set__(self, instance: Any, value: np.ndarray[Any, Any] | None) -> None: ...
 
-        def __getitem__(self, index: Any) -> T: ...
-        def __setitem__(self, index: Any, value: T) -> None: ...
-        def __len__(self) -> int: ...
+    class Array2(Array[T]):
+        """A 2-D view."""
 
-    Array = np.ndarray[Any, Any] | _View[T]
-    Array2 = np.ndarray[Any, Any] | _View[T]
-    Array3 = np.ndarray[Any, Any] | _View[T]
+        def __set__(self, instance: Any, value: np.ndarray[Any, Any] | None) -> None: ...
+
+    class Array3(Array[T]):
+        """A 3-D view."""
+
+        def __set__(self, instance: Any, value: np.ndarray[Any, Any] | None) -> None: ...
+
     FixedArray = Annotated
     Traversable = Any
     Texture = Any

@@ -211,7 +211,7 @@ _ELEMENTS: dict[str, Any] = {
 
 
 if TYPE_CHECKING:
-    from optixc.host.vector_types import *
+    from optixc.host.vector_types import *  # noqa: F403
 else:
     for _family in _ELEMENTS:
         for _size in (2, 3, 4):
