@@ -196,7 +196,16 @@ class DeviceContext(Context):
         for one in built.report["bound_values"]:
             annotation = bound[one["name"]].annotation or NO_ANNOTATION
             self.log(LOG_PRINT, "COMPILER", f"bound value {one['name']} = {one['value']} ({annotation}) replaces {one['reads']} reads")
-        return Pipeline(self, groups, str(built.library), built.params, built.report, built.programs, chosen.pipeline)
+        return Pipeline(
+            self,
+            groups,
+            str(built.library),
+            built.params,
+            built.report,
+            built.programs,
+            int(chosen.pipeline.exception_flags),
+            chosen.pipeline.uses_motion_blur,
+        )
 
     def accel_build(
         self,

@@ -12,6 +12,7 @@ from typing import Any, Generic, ParamSpec, TypeVar, cast
 
 from optixc.errors import InvalidOperationError
 from optixc.host import mathematics, structs
+from optixc.interpret.plain_call import call_helper
 from optixc.ir.intrinsic_rows import INTRINSICS, OVERLOADS
 from optixc.ir.programs import program_kind
 
@@ -38,14 +39,14 @@ class ProgramFunction(Generic[P, R]):
 
 
 class HelperFunction(Generic[P, R]):
-    """A helper of a shader file; Python may call it."""
+    """A helper of a shader file; called from Python it runs with the arithmetic of shaders, float32 and wrapping integers."""
 
     def __init__(self, function: Callable[P, R]) -> None:
         self.__wrapped__ = function
         functools.update_wrapper(self, function)
 
     def __call__(self, *args: P.args, **kwargs: P.kwargs) -> R:
-        return self.__wrapped__(*args, **kwargs)
+        return cast(R, call_helper(self.__wrapped__, args, kwargs))
 
     def __repr__(self) -> str:
         return f"<device function {self.__wrapped__.__name__}>"

@@ -75,6 +75,17 @@ class Checker:
             self._instances[(symbol, tuple(types))] = instance
         del self.helpers[kept:]
 
+    def instance_of(self, symbol: FunctionSymbol, types: Sequence[t.Type | None]) -> FunctionInstance | None:
+        """The instance of a helper that Python itself calls; None after a diagnostic."""
+        instance = FunctionInstance(symbol, symbol.name, symbol.scope.file.source, None)
+        context = Context(symbol.scope, instance, self.diagnostics, self._hooks)
+        resolved = self._parameter_types(context, symbol, types)
+        if resolved is None:
+            return None
+        self._instances[(symbol, tuple(resolved))] = instance
+        self._instantiate(context, symbol, resolved, (), instance)
+        return instance
+
     def _helper(self, c: Context, symbol: FunctionSymbol, types: list[t.Type | None], node: ast.expr) -> FunctionInstance | None:
         """The instance for argument types; checked at the first call of that kind."""
         scratch = FunctionInstance(symbol, symbol.name, symbol.scope.file.source, None)

@@ -91,6 +91,24 @@ def compile_functions(functions: Iterable[Callable[..., Any]]) -> FrontendResult
         return _compile(scope.file.module_name, scope.file.source, scope, programs, helpers, diagnostics, declarer)
 
 
+def check_helper(function: Callable[..., Any], types: Sequence[t.Type | None]) -> FunctionInstance:
+    """A helper checked for a call from Python: annotated parameters have their annotation, the others the types given.
+
+    Raises CompileError with every error of the helper and of what it calls.
+    """
+    diagnostics = Diagnostics()
+    declarer = Declarer(diagnostics, ())
+    with without_collection(), deep_recursion():
+        found = live_functions([function], declarer, diagnostics)
+        instance = None
+        if found and not diagnostics.found:
+            symbol = found[0].symbol
+            instance = Checker(diagnostics, _params_of(symbol.scope)).instance_of(symbol, types)
+    if instance is None or diagnostics.found:
+        raise CompileError(diagnostics.in_order())
+    return instance
+
+
 def _compile(
     name: str,
     source: SourceFile,

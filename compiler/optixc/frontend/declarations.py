@@ -39,6 +39,7 @@ class Declarations:
     star_imports: list[Callable[[str], Symbol | None]] = field(default_factory=list)
     _symbols: dict[str, Symbol] = field(default_factory=dict)
     _in_progress: set[str] = field(default_factory=set)
+    _asked: set[str] = field(default_factory=set)
 
     def lookup(self, name: str) -> Symbol | None:
         """What `name` means here, or None where nothing binds it."""
@@ -60,9 +61,13 @@ class Declarations:
                 found = self._meaning(name, definitions)
             finally:
                 self._in_progress.discard(name)
-        if isinstance(found, SkippedName | ConstantSymbol | None) and self.live is not None:
-            # A live value is what Python would use, whatever the text of its definition.
-            found = self.live(name) or found
+        if isinstance(found, SkippedName | ConstantSymbol | None) and self.live is not None and name not in self._asked:
+            # A live value is what Python would use, whatever the text of its definition; to explain one, this scope may be asked again.
+            self._asked.add(name)
+            try:
+                found = self.live(name) or found
+            finally:
+                self._asked.discard(name)
         if found is not None:
             return found
         for star in self.star_imports:

@@ -199,6 +199,8 @@ class _Captured:
         if parameters is not None:
             struct = self._reader.struct(parameters)
             return ParamsSymbol(struct.type, struct.span) if isinstance(struct, StructSymbol) else None
-        if inspect.isfunction(getattr(value, "__wrapped__", value)):
+        is_ours = type(value).__module__.startswith("optixc") and hasattr(value, "__wrapped__")
+        if is_ours or (inspect.isfunction(value) and not hasattr(value, "__wrapped__")):
             return self._reader.function(value)
+        # What host decorators made of a function is host code.
         return None

@@ -14,7 +14,6 @@ from optixc.host.context import Context
 from optixc.host.groups import ProgramGroup, Record, check_layout
 from optixc.host.sbt import ShaderBindingTable
 from optixc.host.stack_sizes import StackSizes, nesting_that_fits
-from optixc.options import PipelineCompileOptions
 
 STEP_MS = 50
 FAULT_BOUND_VALUE = 3
@@ -73,10 +72,12 @@ class Pipeline:
         params: dict[str, Any] | None,
         report: dict[str, Any],
         programs: Sequence[dict[str, Any]],
-        options: PipelineCompileOptions | None = None,
+        exception_flags: int = 0,
+        uses_motion: bool = False,
     ) -> None:
         self._pipeline: Any = None
-        self.options = options or PipelineCompileOptions()
+        self.exception_flags = exception_flags
+        self.uses_motion = uses_motion
         self._context = context
         self._groups = tuple(groups)
         self._params = params

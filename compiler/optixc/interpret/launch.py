@@ -64,7 +64,7 @@ def _machine(pipeline: Pipeline) -> Machine:
         params = params or checked.params
         instances[program.name] = next(one for one in checked.programs if one.name == program.name)
     numbers = {pipeline.program_number(name): instance for name, instance in instances.items()}
-    return Machine(numbers, params, pipeline.report().max_trace_depth, pipeline.options)
+    return Machine(numbers, params, pipeline.report().max_trace_depth, pipeline.exception_flags, pipeline.uses_motion)
 
 
 def _three(numbers: int | tuple[int, ...], what: str, missing: int = 1) -> tuple[int, ...]:

@@ -20,7 +20,6 @@ from optixc.interpret.rewrite import compile_instance
 from optixc.ir import types as t
 from optixc.ir.intrinsics import Intrinsic
 from optixc.ir.nodes import ParameterRole
-from optixc.options import PipelineCompileOptions
 
 HEADER_SIZE = 32
 NO_PROGRAM = -1
@@ -37,13 +36,14 @@ class Machine:
         programs: dict[int, FunctionInstance],
         params: t.Struct | None,
         max_trace_depth: int,
-        options: PipelineCompileOptions,
+        exception_flags: int = 0,
+        uses_motion: bool = False,
     ) -> None:
         self.params = values.zero(params) if params is not None else None
         self._programs = programs
         self._max_trace_depth = max_trace_depth
-        self._flags = int(options.exception_flags)
-        self.uses_motion = int(options.uses_motion_blur)
+        self._flags = exception_flags
+        self.uses_motion = int(uses_motion)
         self._functions: dict[FunctionInstance, Callable[..., Any]] = {}
         self._frames: list[Frame] = []
         self._payload_types: list[t.Struct | None] = []
