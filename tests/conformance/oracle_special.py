@@ -10,7 +10,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from harness import Harness
-from oracle_api import NEEDED, check_misuse, has_check
+from oracle_api import NEEDED, check_misuse, check_properties, check_stack_helpers, has_check
 from oracle_callables import check_callables
 from oracle_exceptions import check_exceptions, check_refused_code
 from oracle_files import Probe
@@ -45,6 +45,10 @@ def check_of(probe: Probe) -> Check | None:
         return Check(("random instance access", "static transforms", "several instance levels"), check_instance_queries)
     if probe.data.get("queries") and is_triangle_query(probe):
         return Check(("random vertex access", *(("vertex motion",) if moves(probe) else ())), check_triangle_queries)
+    if probe.name == "stack_size_helpers":
+        return Check((), check_stack_helpers)
+    if probe.name == "device_properties":
+        return Check((), check_properties)
     if "rcName" in probe.data and has_check(probe):
         return Check(NEEDED.get(probe.name, ()), check_misuse)
     return None
