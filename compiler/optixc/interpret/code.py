@@ -15,14 +15,6 @@ from optixc.ir import types as t
 PREFIX = "_ox_"
 
 
-class Machine:
-    """What the rewritten program calls at run time for everything that is not arithmetic; see `launch`."""
-
-    def helper(self, instance: FunctionInstance) -> Callable[..., Any]:
-        """The rewritten function of a helper instance."""
-        raise NotImplementedError
-
-
 @dataclass(eq=False)
 class Code:
     """One function instance on its way to Python code; `names` are the globals that the new tree uses."""

@@ -16,7 +16,7 @@ from optixc.frontend.checked import FunctionInstance
 from optixc.host import library
 from optixc.interpret import native, values
 from optixc.interpret.frames import EndProgram, Frame, Thrown, fill, registers, update, word_types
-from optixc.interpret.rewrite import compile_instance
+from optixc.interpret.rewrite import Functions
 from optixc.ir import types as t
 from optixc.ir.intrinsics import Intrinsic
 from optixc.ir.nodes import ParameterRole
@@ -44,7 +44,8 @@ class Machine:
         self._max_trace_depth = max_trace_depth
         self._flags = exception_flags
         self.uses_motion = int(uses_motion)
-        self._functions: dict[FunctionInstance, Callable[..., Any]] = {}
+        self._functions = Functions(self)
+        self.helper = self._functions.helper
         self._frames: list[Frame] = []
         self._payload_types: list[t.Struct | None] = []
         self._error: BaseException | None = None
@@ -87,24 +88,10 @@ class Machine:
 
     # ---- programs -----------------------------------------------------------------------------------------------------------------
 
-    def helper(self, instance: FunctionInstance) -> Callable[..., Any]:
-        """The function of an instance; rewritten when it first runs, so that helpers may call themselves."""
-
-        def call(*arguments: Any) -> Any:
-            return self._function(instance)(*arguments)
-
-        return call
-
-    def _function(self, instance: FunctionInstance) -> Callable[..., Any]:
-        known = self._functions.get(instance)
-        if known is None:
-            known = self._functions[instance] = compile_instance(instance, self)
-        return known
-
     def _run(self, instance: FunctionInstance, frame: Frame, arguments: list[Any]) -> Any:
         self._frames.append(frame)
         try:
-            return self._function(instance)(*arguments)
+            return self._functions.run(instance, arguments)
         except EndProgram:
             return None
         finally:

@@ -21,7 +21,7 @@ from optixc.host.matrices import Matrix
 from optixc.host.structs import layout_of
 from optixc.host.vectors import Vector
 from optixc.interpret import operations, values
-from optixc.interpret.rewrite import compile_instance
+from optixc.interpret.rewrite import Functions
 from optixc.ir import types as t
 
 _SCALARS = {
@@ -45,18 +45,7 @@ class HostMachine:
 
     def __init__(self) -> None:
         self.params: Any = None
-        self._functions: dict[FunctionInstance, Callable[..., Any]] = {}
-
-    def helper(self, instance: FunctionInstance) -> Callable[..., Any]:
-        """The function of an instance; rewritten when it first runs, so that helpers may call themselves."""
-
-        def call(*arguments: Any) -> Any:
-            known = self._functions.get(instance)
-            if known is None:
-                known = self._functions[instance] = compile_instance(instance, self)
-            return known(*arguments)
-
-        return call
+        self.helper = Functions(self).helper
 
     def print(self, text: str) -> None:
         """print()."""

@@ -6,7 +6,7 @@ The new function keeps the author's file name, lines and variable names, so that
 from __future__ import annotations
 
 import ast
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import Any
 
 from optixc.frontend.check_print import print_parts
@@ -35,6 +35,25 @@ def compile_instance(instance: FunctionInstance, machine: Any) -> Callable[..., 
     exec(compile(module, instance.source.path, "exec"), names)
     function: Callable[..., Any] = names[node.name]
     return function
+
+
+class Functions:
+    """The rewritten functions of a machine, each made when it first runs, so that helpers may call themselves."""
+
+    def __init__(self, machine: Any) -> None:
+        self._machine = machine
+        self._made: dict[FunctionInstance, Callable[..., Any]] = {}
+
+    def run(self, instance: FunctionInstance, arguments: Sequence[Any]) -> Any:
+        """Call an instance."""
+        known = self._made.get(instance)
+        if known is None:
+            known = self._made[instance] = compile_instance(instance, self._machine)
+        return known(*arguments)
+
+    def helper(self, instance: FunctionInstance) -> Callable[..., Any]:
+        """The function of an instance for those who call it."""
+        return lambda *arguments: self.run(instance, arguments)
 
 
 def _body(code: Code, statements: list[ast.stmt]) -> list[ast.stmt]:
