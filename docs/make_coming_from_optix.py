@@ -1,0 +1,146 @@
+"""Writes docs/coming_from_optix.md: every OptiX host and device function with its name here, its status and what differs.
+
+Device functions come from the compiler's one table and from the headers that generated code includes; host functions from the table
+below, whose names a test looks up. Run `python docs/make_coming_from_optix.py` after a change of either.
+"""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+from optixc.installation import include_folder
+from optixc.ir.intrinsic_rows import INTRINSICS, ROWS
+from optixc.ir.intrinsics import Intrinsic
+from optixc.ir.programs import ALL_PROGRAMS, ProgramKind
+
+PAGE = Path(__file__).with_name("coming_from_optix.md")
+THERE, ABSENT, NEEDLESS = "yes", "no", "not needed"
+
+HOST: tuple[tuple[str, str, str, str], ...] = (
+    ("optixInit, optixInitWithHandle, optixUninitWithHandle, optixQueryFunctionTable", "", NEEDLESS, "the package loads its library"),
+    ("optixGetErrorName, optixGetErrorString", "Result", THERE, "exceptions carry `code`, an `ox.Result`, and a sentence with the remedy"),
+    ("optixDeviceContextCreate", "DeviceContext", THERE, "validation, log callback, cache folder and threads are arguments"),
+    ("optixDeviceContextDestroy", "DeviceContext.destroy", THERE, "later use of anything made from it is a named error"),
+    ("optixDeviceContextGetProperty", "DeviceContext.get_property", THERE, "gives the number"),
+    ("optixDeviceContextSetLogCallback", "DeviceContext.set_log_callback", THERE, "callback(level, tag, message); both swapped at once"),
+    ("optixDeviceContextSetCacheEnabled", "DeviceContext.set_cache_enabled", THERE, "OPTIXC_CACHE_MAXSIZE=0 wins"),
+    ("optixDeviceContextGetCacheEnabled", "DeviceContext.get_cache_enabled", THERE, ""),
+    ("optixDeviceContextSetCacheLocation", "DeviceContext.set_cache_location", THERE, "default: OPTIXC_CACHE_DIR, then the user's"),
+    ("optixDeviceContextGetCacheLocation", "DeviceContext.get_cache_location", THERE, ""),
+    ("optixDeviceContextSetCacheDatabaseSizes", "DeviceContext.set_cache_database_sizes", THERE, ""),
+    ("optixDeviceContextGetCacheDatabaseSizes", "DeviceContext.get_cache_database_sizes", THERE, "default 512 MiB and 1 GiB"),
+    ("optixModuleCreate", "DeviceContext.module_create", THERE, "a Python file, module or list of functions; C++ is made per pipeline"),
+    ("optixModuleCreateWithTasks", "DeviceContext.module_create_with_tasks", THERE, "one task a module"),
+    ("optixTaskExecute", "Task.execute", THERE, "splits off nothing"),
+    ("optixModuleGetCompilationState", "Module.get_compilation_state", THERE, ""),
+    ("optixModuleDestroy", "Module.destroy", THERE, "optional; groups and pipelines go on"),
+    ("optixBuiltinISModuleGet", "", NEEDLESS, "built-in primitives bring their intersection programs"),
+    ("optixProgramGroupCreate", "DeviceContext.program_group_create", THERE, "one group a call; the kind follows from the keywords"),
+    ("optixProgramGroupDestroy", "", NEEDLESS, "groups are garbage collected"),
+    ("optixProgramGroupGetStackSize", "ProgramGroup.get_stack_size", THERE, "bytes of real frames; an estimate before a pipeline exists"),
+    ("optixPipelineCreate", "DeviceContext.pipeline_create", THERE, "compiles; `bound_values`, `simd`, `math`, `debug` are arguments"),
+    ("optixPipelineDestroy", "Pipeline.destroy", THERE, "optional"),
+    ("optixPipelineSetStackSize", "Pipeline.set_stack_size", THERE, "never needed; with STACK_OVERFLOW it limits nesting"),
+    ("optixUtilAccumulateStackSizes", "util_accumulate_stack_sizes", THERE, ""),
+    ("optixUtilComputeStackSizes", "util_compute_stack_sizes", THERE, "gives the three numbers"),
+    ("optixUtilComputeStackSizesDCSplit", "util_compute_stack_sizes_dc_split", THERE, ""),
+    ("optixUtilComputeStackSizesCssCCTree", "util_compute_stack_sizes_css_cc_tree", THERE, ""),
+    ("optixUtilComputeStackSizesSimplePathTracer", "util_compute_stack_sizes_simple_path_tracer", THERE, ""),
+    ("optixSbtRecordPackHeader", "ProgramGroup.record", THERE, "`group.record(data)`; the table packs headers"),
+    ("OptixShaderBindingTable", "ShaderBindingTable", THERE, "`explain()`, `check(pipeline, scene)`, `from_materials()` besides"),
+    ("optixLaunch", "Pipeline.launch", THERE, "synchronous; parameters are a struct instance"),
+    ("optixAccelComputeMemoryUsage, optixAccelEmitProperty", "Accel.memory_usage", THERE, "memory is the library's; `aabb` too"),
+    ("optixAccelBuild", "DeviceContext.accel_build", THERE, "inputs are numpy arrays"),
+    ("optixAccelBuild with OPERATION_UPDATE", "Accel.update", THERE, "the handle stays"),
+    ("optixAccelCompact", "Accel.compact", THERE, "structures are compact already: the same accel"),
+    ("optixAccelGetRelocationInfo, optixCheckRelocationCompatibility, optixAccelRelocate", "Accel.relocate", THERE, "handles stay"),
+    ("optixConvertPointerToTraversableHandle", "DeviceContext.static_transform", THERE, "and matrix_motion_, srt_motion_transform"),
+    ("optixClusterAccelComputeMemoryUsage, optixClusterAccelBuild", "", ABSENT, "no clusters on a CPU"),
+    ("optixDisplacementMicromapArray...", "", ABSENT, "dropped by OptiX 9"),
+    ("optixCoopVecMatrixConvert, optixCoopVecMatrixComputeSize", "", ABSENT, ""),
+    ("optixDenoiser...", "", ABSENT, "use a denoiser library on the image"),
+)
+
+# Device functions of OptiX 9 that have no row in the table.
+ABSENT_DEVICE: tuple[tuple[str, str], ...] = (
+    ("optixMakeHitObject, optixHitObjectGetTraverseData", "keep the hit object of the traversal, or traverse again"),
+    ("optixSetPayloadTypes", "a program's `@ox.payload` parameter says its type; `ox.payload_word` says who reads and writes a word"),
+    ("optixGetExceptionLineInfo", "failed launches tell path and line"),
+    ("optixTexFootprint2D, optixTexFootprint2DLod, optixTexFootprint2DGrad", ""),
+    ("optixCoopVec...", "write the matrix product as a loop"),
+)
+
+_LETTERS = {
+    ProgramKind.RAYGEN: "RG",
+    ProgramKind.INTERSECTION: "IS",
+    ProgramKind.ANYHIT: "AH",
+    ProgramKind.CLOSESTHIT: "CH",
+    ProgramKind.MISS: "MS",
+    ProgramKind.EXCEPTION: "EX",
+    ProgramKind.DIRECT_CALLABLE: "DC",
+    ProgramKind.CONTINUATION_CALLABLE: "CC",
+}
+_RENAMED = {
+    "optixGetSbtDataPointer": "takes the struct class; a program's struct parameter is the same data",
+    "optixHitObjectGetSbtDataPointer": "takes the struct class",
+    "optixTrace": "keywords with defaults; payload is a struct, or a tuple that comes back",
+    "optixTraverse": "as trace()",
+    "optixInvoke": "payload as for trace()",
+    "optixDirectCall": "arguments and `result=`; checked against the pipeline's callables",
+    "optixContinuationCall": "arguments and `result=`; checked against the pipeline's callables",
+    "optixReorder": "accepted; no effect",
+    "optixThrowException": "code and up to eight details in one function",
+}
+_NUMBERED = re.compile(r"_\d+$")
+INTRODUCTION = """# Coming from OptiX
+
+Every host and device function of OptiX, its name here, whether it is there, and what differs. The rule for names: drop `optix`, write
+the rest in snake case; enums keep OptiX's values (`OptixRayFlags` is `ox.RayFlags`). Kinds of programs: RG raygen, IS intersection, AH
+any-hit, CH closest-hit, MS miss, EX exception, DC direct callable, CC continuation callable.
+
+What surprises most:
+
+- Shaders are Python functions that are parsed, not run. A program's kind is its prefix, its parameters are recognised by type.
+- A callable's last `@ox.struct` parameter is the data of its SBT record, unless the calls of the pipeline pass it as an argument.
+- Stack sizes never have to be set. Callables that call each other without end are a stack overflow, not a crash.
+- A launch returns when it is done. A fault names program line and launch index; other launches go on.
+- `pipeline.report()` says what was compiled in and which line asked for it; `sbt.check(pipeline, scene)` finds wrong tables early.
+
+This page is made by `python docs/make_coming_from_optix.py`.
+"""
+
+
+def page() -> str:
+    """The text of the page."""
+    lines = [INTRODUCTION, "## Host functions", "", "| OptiX | here | there | difference |", "|---|---|---|---|"]
+    lines += [f"| {optix} | {f'`{name}`' if name else ''} | {status} | {difference} |" for optix, name, status, difference in HOST]
+    lines += ["", "## Device functions", "", "| OptiX | here | in | there | remark |", "|---|---|---|---|---|"]
+    headers = "\n".join(path.read_text() for path in sorted((include_folder() / "oxrt").glob("*.h")))
+    known = set(re.findall(r"\w+", headers))
+    seen: set[str] = set()
+    for row in ROWS:
+        family = _NUMBERED.sub("", row.optix)
+        if row.optix and family not in seen:
+            seen.add(family)
+            lines.append(_device_line(row, known))
+    lines += [f"| {optix} | | | {ABSENT} | {remark} |" for optix, remark in ABSENT_DEVICE]
+    return "\n".join(lines) + "\n"
+
+
+def _device_line(row: Intrinsic, known: set[str]) -> str:
+    allowed = "all" if row.allowed == ALL_PROGRAMS else " ".join(text for kind, text in _LETTERS.items() if kind in row.allowed)
+    name = row.overload_of or row.name
+    assert name in INTRINSICS
+    if _NUMBERED.search(row.optix):
+        last_number = sum(_NUMBERED.sub("", other.optix) == _NUMBERED.sub("", row.optix) for other in ROWS) - 1
+        return f"| {row.optix} to _{last_number} | `{name}` to `_{last_number}` | {allowed} | {THERE} | one function a word |"
+    # Macros make some functions from the name without its first words.
+    last = row.cpp.rsplit("::", 1)[-1]
+    parts = {last, re.sub(r"^(hitObjectGet|hitObjectTransform|hitObject|get|transform)", "", last)}
+    is_there = row.optix in _RENAMED or bool(parts & known)
+    return f"| {row.optix} | `{name}` | {allowed} | {THERE if is_there else ABSENT} | {_RENAMED.get(row.optix, row.doc)} |"
+
+
+if __name__ == "__main__":
+    PAGE.write_text(page())
