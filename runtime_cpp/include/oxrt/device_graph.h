@@ -78,14 +78,9 @@ OXRT_INLINE void descend(GraphWalk& walk, const OxrtTraversableView* view, float
         return;
     GraphQuery<ANY> query;
     RTCRay& ray = query.ray();
-    ray.org_x = origin.x;
-    ray.org_y = origin.y;
-    ray.org_z = origin.z;
-    ray.tnear = parent.tnear;
-    ray.dir_x = direction.x;
-    ray.dir_y = direction.y;
-    ray.dir_z = direction.z;
-    ray.time = moves ? relativeTime(*view, time) : 0.0f;
+    EmbreeRow* rows = reinterpret_cast<EmbreeRow*>(&ray);
+    rows[0] = EmbreeRow{origin.x, origin.y, origin.z, parent.tnear};
+    rows[1] = EmbreeRow{direction.x, direction.y, direction.z, moves ? relativeTime(*view, time) : 0.0f};
     ray.tfar = parent.tfar;
     ray.mask = parent.mask;
     ray.id = 0;

@@ -48,27 +48,24 @@ OXRT_INLINE Affine composed(const Affine& outer, const Affine& inner) {
 /* False where there is no finite inverse. */
 OXRT_INLINE bool inverted(const Affine& matrix, Affine& inverse) {
     const float* m = matrix.m;
-    const double c00 = double(m[5]) * m[10] - double(m[6]) * m[9];
-    const double c01 = double(m[6]) * m[8] - double(m[4]) * m[10];
-    const double c02 = double(m[4]) * m[9] - double(m[5]) * m[8];
-    const double determinant = m[0] * c00 + m[1] * c01 + m[2] * c02;
-    const double scale = 1.0 / determinant;
-    if (!(__builtin_fabs(scale) < __builtin_inf()))
+    const float c00 = m[5] * m[10] - m[6] * m[9];
+    const float c01 = m[6] * m[8] - m[4] * m[10];
+    const float c02 = m[4] * m[9] - m[5] * m[8];
+    const float scale = 1.0f / (m[0] * c00 + m[1] * c01 + m[2] * c02);
+    if (!(__builtin_fabsf(scale) < __builtin_inff()))
         return false;
-    const double i[9] = {c00 * scale,
-                         (double(m[2]) * m[9] - double(m[1]) * m[10]) * scale,
-                         (double(m[1]) * m[6] - double(m[2]) * m[5]) * scale,
-                         c01 * scale,
-                         (double(m[0]) * m[10] - double(m[2]) * m[8]) * scale,
-                         (double(m[2]) * m[4] - double(m[0]) * m[6]) * scale,
-                         c02 * scale,
-                         (double(m[1]) * m[8] - double(m[0]) * m[9]) * scale,
-                         (double(m[0]) * m[5] - double(m[1]) * m[4]) * scale};
-    for (int row = 0; row < 3; ++row) {
-        for (int column = 0; column < 3; ++column)
-            inverse.m[4 * row + column] = float(i[3 * row + column]);
-        inverse.m[4 * row + 3] = float(-(i[3 * row] * m[3] + i[3 * row + 1] * m[7] + i[3 * row + 2] * m[11]));
-    }
+    float* i = inverse.m;
+    i[0] = c00 * scale;
+    i[1] = (m[2] * m[9] - m[1] * m[10]) * scale;
+    i[2] = (m[1] * m[6] - m[2] * m[5]) * scale;
+    i[4] = c01 * scale;
+    i[5] = (m[0] * m[10] - m[2] * m[8]) * scale;
+    i[6] = (m[2] * m[4] - m[0] * m[6]) * scale;
+    i[8] = c02 * scale;
+    i[9] = (m[1] * m[8] - m[0] * m[9]) * scale;
+    i[10] = (m[0] * m[5] - m[1] * m[4]) * scale;
+    for (int row = 0; row < 3; ++row)
+        i[4 * row + 3] = -(i[4 * row] * m[3] + i[4 * row + 1] * m[7] + i[4 * row + 2] * m[11]);
     return true;
 }
 
@@ -102,6 +99,19 @@ OXRT_INLINE KeyPlace keyPlace(const OxrtTraversableView& view, float time) {
 
 OXRT_INLINE float blended(float a, float b, float fraction) { return fraction == 0.0f ? a : (1.0f - fraction) * a + fraction * b; }
 
+/* The key of SIZE floats at a time. */
+template <int SIZE> OXRT_INLINE void blendKeys(const OxrtTraversableView& view, float time, float* result) {
+    const KeyPlace place = keyPlace(view, time);
+    const float* a = view.transformKeys + uint64_t(place.key) * SIZE;
+    if (place.fraction == 0.0f) {
+        __builtin_memcpy(result, a, SIZE * sizeof(float));
+        return;
+    }
+    const float rest = 1.0f - place.fraction;
+    for (int i = 0; i < SIZE; ++i)
+        result[i] = rest * a[i] + place.fraction * a[SIZE + i];
+}
+
 /* Translation times rotation times scale and shear, from sx a b pvx sy c pvy sz pvz qx qy qz qw tx ty tz. */
 OXRT_INLINE Affine matrixOfSrt(const float* s) {
     const float x = s[9], y = s[10], z = s[11], w = s[12];
@@ -133,15 +143,12 @@ inline __attribute__((noinline)) Affine matrixAt(const OxrtTraversableView& node
         __builtin_memcpy(matrix.m, node.transformKeys, sizeof(matrix.m));
         return matrix;
     }
-    const KeyPlace place = keyPlace(node, time);
-    const uint32_t stride = node.type == OXRT_TRAVERSABLE_SRT_MOTION ? 16 : 12;
-    const float* a = node.transformKeys + uint64_t(place.key) * stride;
-    float key[16];
-    for (uint32_t i = 0; i < stride; ++i)
-        key[i] = blended(a[i], a[stride + i], place.fraction);
-    if (node.type == OXRT_TRAVERSABLE_SRT_MOTION)
+    if (node.type == OXRT_TRAVERSABLE_SRT_MOTION) {
+        float key[16];
+        blendKeys<16>(node, time, key);
         return matrixOfSrt(key);
-    __builtin_memcpy(matrix.m, key, sizeof(matrix.m));
+    }
+    blendKeys<12>(node, time, matrix.m);
     return matrix;
 }
 

@@ -98,6 +98,9 @@ template <int W> struct RayLanes {
 
 template <int W> OXRT_INLINE Lanes<float, W> packetLanes(const float (&values)[W]) { return loadLanes<float, W>(values); }
 template <int W> OXRT_INLINE Lanes<uint32_t, W> packetLanes(const unsigned (&values)[W]) { return loadLanes<uint32_t, W>(values); }
+template <class T, int W> OXRT_INLINE void setPacket(T (&values)[W], Lanes<T, W> lanes) { storeLanes<T, W>(values, lanes); }
+template <int W>
+OXRT_INLINE void setPacket(unsigned (&values)[W], uint32_t value) { storeLanes<uint32_t, W>(values, Lanes<uint32_t, W>(value)); }
 
 template <int W> OXRT_INLINE Wide<float3, W> getWorldRayOrigin(const RayLanes<W>& ray) {
     const auto& r = ray.packet.ray;

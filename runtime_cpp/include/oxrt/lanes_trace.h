@@ -8,16 +8,12 @@
 #ifndef OXRT_LANES_TRACE_H
 #define OXRT_LANES_TRACE_H
 
-#include <oxrt/lanes_candidate.h>
+#include <oxrt/lanes_graph.h>
 
 namespace oxrt {
 inline namespace OXRT_ISA {
 
 /* ---- queries ------------------------------------------------------------------------------------------------------------------ */
-
-template <class T, int W> OXRT_INLINE void setPacket(T (&values)[W], Lanes<T, W> lanes) { storeLanes<T, W>(values, lanes); }
-template <int W>
-OXRT_INLINE void setPacket(unsigned (&values)[W], uint32_t value) { storeLanes<uint32_t, W>(values, Lanes<uint32_t, W>(value)); }
 
 /* Whether the active rays start at one point, and go in about one direction: within 25 degrees of the first. */
 template <int W>
@@ -212,8 +208,14 @@ __attribute__((noinline)) Lanes<bool, W> traverseLanes(RayLanes<W>& ray, Lanes<b
 template <class Programs, class Flags, bool ANY, int W>
 OXRT_INLINE Lanes<bool, W> traverse(RayLanes<W>& ray, Lanes<bool, W> mask, typename Programs::Payload& payload, bool isCoherent) {
     using Scalar = typename Programs::Scalar;
-    if (__builtin_expect(ray.paths != nullptr, 0))
-        return traverseLanes<Programs, Flags, ANY>(ray, mask, payload);
+    if (__builtin_expect(ray.paths != nullptr, 0)) {
+        constexpr bool mayFilterHere = FlagTraits<Flags>::mayCull || (Scalar::hasAnyHit && FlagTraits<Flags>::mayRunAnyHit);
+        const uint32_t calling = OXRT_SCENE_HAS_SPHERES | OXRT_SCENE_HAS_CURVES | OXRT_SCENE_HAS_MICROMAPS |
+                                 (Scalar::hasIntersection ? uint32_t(OXRT_SCENE_HAS_CUSTOM) : 0u);
+        if (!isCoherent || (ray.root->needs & calling) || (mayFilterHere && mayFilter<Scalar>(ray.flags)))
+            return traverseLanes<Programs, Flags, ANY>(ray, mask, payload);
+        return traverseGraphPacket<Scalar, ANY>(ray, mask, isCoherent);
+    }
     if constexpr (!hasCallbacks<Scalar, Flags>)
         return traversePacket<Flags, ANY>(ray, mask, isCoherent);
     else {
