@@ -65,7 +65,6 @@ HOST: tuple[tuple[str, str, str, str], ...] = (
 # Device functions of OptiX 9 that have no row in the table.
 ABSENT_DEVICE: tuple[tuple[str, str], ...] = (
     ("optixMakeHitObject, optixHitObjectGetTraverseData", "keep the hit object of the traversal, or traverse again"),
-    ("optixSetPayloadTypes", "a program's `@ox.payload` parameter says its type; `ox.payload_word` says who reads and writes a word"),
     ("optixGetExceptionLineInfo", "failed launches tell path and line"),
     ("optixTexFootprint2D, optixTexFootprint2DLod, optixTexFootprint2DGrad", ""),
     ("optixCoopVec...", "write the matrix product as a loop"),

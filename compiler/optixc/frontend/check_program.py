@@ -18,6 +18,7 @@ _WITH_PAYLOAD = (ProgramKind.MISS, ProgramKind.CLOSESTHIT, ProgramKind.ANYHIT, P
 _WITH_ATTRIBUTES = (ProgramKind.CLOSESTHIT, ProgramKind.ANYHIT)
 _STAGE_SHIFT = {ProgramKind.CLOSESTHIT: 2, ProgramKind.MISS: 4, ProgramKind.ANYHIT: 6, ProgramKind.INTERSECTION: 8}
 _READ, _WRITE = 1, 2
+MAX_PAYLOAD_CLASSES = 8
 
 
 def program_parameters(c: Context, symbol: FunctionSymbol) -> list[InstanceParameter]:
@@ -96,6 +97,19 @@ def _expectation(kind: ProgramKind) -> str:
     if kind in _CALLABLES:
         words.append("values, structs too")
     return "it takes " + ", ".join(words)
+
+
+def check_payload_classes(diagnostics: Diagnostics, programs: list[FunctionInstance]) -> None:
+    """A module has at most eight payload types (OptiX guide, chapter 14)."""
+    seen: dict[t.Type, None] = {}
+    for program in programs:
+        for parameter in program.parameters:
+            if parameter.role is ParameterRole.PAYLOAD and parameter.local.type not in seen:
+                seen[parameter.local.type] = None
+                if len(seen) == MAX_PAYLOAD_CLASSES + 1:
+                    assert program.symbol is not None
+                    message = f"the programs of a module take at most {MAX_PAYLOAD_CLASSES} payload classes, this is one more"
+                    diagnostics.add(program.source, "OX207", program.symbol.span, message, "move programs to another file")
 
 
 def check_requirements(diagnostics: Diagnostics, program: FunctionInstance) -> None:

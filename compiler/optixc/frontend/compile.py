@@ -10,6 +10,7 @@ from typing import Any
 
 from optixc.diagnostics import CompileError
 from optixc.frontend.check import Checker
+from optixc.frontend.check_program import check_payload_classes
 from optixc.frontend.checked import Checked, FunctionInstance
 from optixc.frontend.declarations import Declarations
 from optixc.frontend.declare import Declarer, structs_of
@@ -122,6 +123,7 @@ def _compile(
     instances = [checker.check_program(symbol) for symbol in programs]
     for symbol in helpers:
         checker.check_unused_helper(symbol)
+    check_payload_classes(diagnostics, instances)
     if diagnostics.found:
         raise CompileError(diagnostics.in_order())
     dependencies = tuple(declarer.files.dependencies)
