@@ -9,7 +9,6 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from optixc.codegen.cpp_types import TypeNames
-from optixc.codegen.declarations import assigned_local
 from optixc.codegen.names import Scope
 from optixc.codegen.needs import Needs
 from optixc.codegen.program_classes import ProgramClass
@@ -17,6 +16,7 @@ from optixc.ir.nodes import CallCallable, Function, LocalRef, Parameter, Paramet
 from optixc.ir.types import Struct
 from optixc.ir.walk import expressions, statements
 from optixc.passes.callables import CallableSignature, signature_of_call, signatures_called
+from optixc.passes.uses import assigned_local
 
 
 @dataclass(frozen=True)

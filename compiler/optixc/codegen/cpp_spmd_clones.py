@@ -31,8 +31,8 @@ from optixc.ir.nodes import (
 )
 from optixc.ir.types import Scalar
 from optixc.ir.walk import called_helpers, expressions, statements
-from optixc.passes.regions import stored_local
 from optixc.passes.uniformity import Clone, UniformityAnalysis
+from optixc.passes.uses import stored_local
 
 Key = tuple[str, tuple[bool, ...]]
 

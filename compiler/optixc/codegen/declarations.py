@@ -8,8 +8,9 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
-from optixc.ir.nodes import Assign, CallCallable, CallHelper, CallIntrinsic, Expr, ForRange, Function, Local, LocalRef, Stmt, Trace, While
-from optixc.ir.walk import Body, blocks, operands, place_root, statements, subexpressions
+from optixc.ir.nodes import Assign, CallCallable, CallHelper, ForRange, Function, Local, LocalRef, Stmt, Trace, While
+from optixc.ir.walk import Body, place_root, statements
+from optixc.passes.uses import assigned_local, mentions, mentions_in, mentions_itself, reads, turn_blocks
 
 
 @dataclass
@@ -19,17 +20,6 @@ class Declarations:
     at_top: list[Local] = field(default_factory=list)
     at_statement: dict[int, Local] = field(default_factory=dict)
     unread: set[str] = field(default_factory=set)
-
-
-def assigned_local(statement: Stmt) -> Local | None:
-    """The local that a statement gives a whole new value, None if there is none."""
-    match statement:
-        case Assign(target=LocalRef(local=local)):
-            return local
-        case CallHelper(target=target) | CallIntrinsic(target=target) | CallCallable(target=target) | ForRange(target=target):
-            return target
-        case _:
-            return None
 
 
 def declarations(function: Function, splits_loops: bool = False) -> Declarations:
@@ -54,18 +44,6 @@ def is_changed(body: Body, name: str) -> bool:
     return any(_changes(statement, name) for statement in statements(body))
 
 
-def reads(statement: Stmt) -> set[str]:
-    """Names of locals that a statement reads itself, its blocks apart. The root of a place that is stored to is not read."""
-    names: set[str] = set()
-    for position, operand in enumerate(operands(statement)):
-        is_target = isinstance(statement, Assign) and position == 0
-        root = place_root(operand) if is_target else None
-        for part in subexpressions(operand):
-            if isinstance(part, LocalRef) and not (root is not None and part.local.name == root.name):
-                names.add(part.local.name)
-    return names
-
-
 def _changes(statement: Stmt, name: str) -> bool:
     target = assigned_local(statement)
     if target is not None and target.name == name:
@@ -85,25 +63,14 @@ def _read_names(body: Body) -> set[str]:
     return {name for statement in statements(body) for name in reads(statement)}
 
 
-def _mentions_itself(statement: Stmt, name: str) -> bool:
-    target = assigned_local(statement)
-    if target is not None and target.name == name:
-        return True
-    return any(_mentions_in(operand, name) for operand in operands(statement))
-
-
-def _mentions(statement: Stmt, name: str) -> bool:
-    return _mentions_itself(statement, name) or any(_is_mentioned(block, name) for block in blocks(statement))
-
-
 def _is_mentioned(body: Body, name: str) -> bool:
-    return any(_mentions(statement, name) for statement in body)
+    return any(mentions(statement, name) for statement in body)
 
 
 def _declaring_statements(body: Body, name: str, splits_loops: bool) -> list[Stmt]:
     """The statements that can declare the local: the first mention in the innermost block that holds all of them, or every loop that
     counts with it if nothing else mentions it there."""
-    mentioning = [statement for statement in body if _mentions(statement, name)]
+    mentioning = [statement for statement in body if mentions(statement, name)]
     if (splits_loops or len(mentioning) == 1) and all(_counts_alone(statement, name) for statement in mentioning):
         return mentioning
     first = mentioning[0]
@@ -112,8 +79,8 @@ def _declaring_statements(body: Body, name: str, splits_loops: bool) -> list[Stm
         return [] if name in reads(first) else [first]
     if len(mentioning) > 1:
         return []
-    holders = [block for block in _inner_blocks(first) if _is_mentioned(block, name)]
-    if len(holders) != 1 or (_mentions_itself(first, name) and not _is_inside_loop(first, name)):
+    holders = [block for block in turn_blocks(first) if _is_mentioned(block, name)]
+    if len(holders) != 1 or (mentions_itself(first, name) and not _is_inside_loop(first, name)):
         return []
     return _declaring_statements(holders[0], name, splits_loops)
 
@@ -122,20 +89,9 @@ def _counts_alone(statement: Stmt, name: str) -> bool:
     """Whether the statement is a loop that counts with this local, which nothing else of it changes."""
     if not isinstance(statement, ForRange) or statement.target.name != name or is_changed(statement.body, name):
         return False
-    return not any(_mentions_in(bound, name) for bound in (statement.start, statement.stop, statement.step))
+    return not any(mentions_in(bound, name) for bound in (statement.start, statement.stop, statement.step))
 
 
 def _is_inside_loop(statement: Stmt, name: str) -> bool:
     """Whether a loop's condition mentions a local only behind what is hoisted from it, which stands in the loop's own block."""
     return isinstance(statement, While) and _is_mentioned(statement.condition_body, name)
-
-
-def _mentions_in(expression: Expr, name: str) -> bool:
-    return any(isinstance(part, LocalRef) and part.local.name == name for part in subexpressions(expression))
-
-
-def _inner_blocks(statement: Stmt) -> tuple[Body, ...]:
-    """The C++ blocks of a statement: what is hoisted from a loop's condition stands in the same block as the loop's body."""
-    if isinstance(statement, While) and statement.condition_body:
-        return ((*statement.condition_body, *statement.body),)
-    return blocks(statement)

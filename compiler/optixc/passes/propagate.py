@@ -11,7 +11,7 @@ from dataclasses import replace
 from optixc.ir.nodes import Assign, Expr, Function, Literal, LocalRef, Pipeline, Stmt
 from optixc.ir.walk import Body, map_blocks, rewrite_body, statements
 from optixc.passes.fold_constants import fold_constants
-from optixc.passes.regions import stored_local
+from optixc.passes.uses import stored_local
 
 
 def propagate_constants(pipeline: Pipeline) -> Pipeline:
