@@ -75,11 +75,11 @@ template <int W> OXRT_INLINE void beginCandidates(CandidateLanes<W>& candidates,
     __builtin_memcpy(world.time, own.time, sizeof(own.time));
 }
 
-/* Embree drops lanes whose interval is empty before it calls back; for reports an interval of one number is not. */
+/* Embree drops lanes whose interval is empty or one number before it calls back; reports may be accepted in one number. */
 template <int W> OXRT_INLINE void openEmptyIntervals(CandidateLanes<W>& candidates, typename CandidateLanes<W>::PacketRay& packet) {
-    const Lanes<bool, W> isEmpty = packetLanes<W>(packet.tnear) > packetLanes<W>(packet.tfar);
+    const Lanes<bool, W> isEmpty = packetLanes<W>(packet.tnear) >= packetLanes<W>(packet.tfar);
     setPacket(packet.tnear, select(isEmpty, candidates.tmin, packetLanes<W>(packet.tnear)));
-    setPacket(packet.tfar, select(isEmpty, candidates.tmax, packetLanes<W>(packet.tfar)));
+    setPacket(packet.tfar, select(isEmpty, nextUp(candidates.tmax), packetLanes<W>(packet.tfar)));
     candidates.closestInEmbree = packetLanes<W>(packet.tfar);
 }
 
@@ -152,7 +152,7 @@ template <int W> OXRT_INLINE void scalarRay(Ray& one, const RayLanes<W>& ray, vo
 }
 
 /* Enters the closest hit of one lane. */
-template <int W> OXRT_INLINE void enterScalarHit(RayLanes<W>& ray, const Ray& one, int lane) {
+template <class Scalar, int W> OXRT_INLINE void enterScalarHit(RayLanes<W>& ray, const Ray& one, int lane) {
     auto& hit = ray.packet.hit;
     hit.Ng_x[lane] = one.normal.x;
     hit.Ng_y[lane] = one.normal.y;
@@ -164,11 +164,12 @@ template <int W> OXRT_INLINE void enterScalarHit(RayLanes<W>& ray, const Ray& on
     const bool isNative = one.path ? one.path->native != nullptr : one.instance != nullptr;
     hit.instID[0][lane] = isNative ? getInstanceIndex(one) : RTC_INVALID_GEOMETRY_ID;
     ray.t.set(lane, one.t);
-    if (isCustomGeometry(one)) {
-        ray.kind.set(lane, one.kind);
-        for (int i = 0; i < 8; ++i)
-            ray.attributes[i].set(lane, one.attributes[i]);
-    }
+    if constexpr (Scalar::hasIntersection)
+        if (isCustomGeometry(one)) {
+            ray.kind.set(lane, one.kind);
+            for (int i = 0; i < 8; ++i)
+                ray.attributes[i].set(lane, one.attributes[i]);
+        }
 }
 
 /* The masked lanes one after the other, with the scalar programs as callbacks; the lanes that hit something. */
@@ -197,7 +198,7 @@ __attribute__((noinline)) Lanes<bool, W> traverseLanes(RayLanes<W>& ray, Lanes<b
         if (isHit) {
             hits |= 1u << lane;
             if constexpr (!ANY)
-                enterScalarHit(ray, one, lane);
+                enterScalarHit<Scalar>(ray, one, lane);
         }
     });
     return Lanes<bool, W>::ofBits(hits);
