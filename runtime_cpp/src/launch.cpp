@@ -67,6 +67,8 @@ void Launch::prepare(const Context& context, const OxrtLaunch& launch, const Oxr
     view.textureCount = textures.count;
     view.services = &context.services;
     view.cancel = &cancelWord;
+    exceptionsTold = 0;
+    view.exceptionsTold = &exceptionsTold;
     view.validation = context.validation;
     program = &raygen;
     threadCount = context.threads;

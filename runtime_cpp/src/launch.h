@@ -55,6 +55,7 @@ private:
     std::atomic<std::uint64_t> done{0};
     std::atomic<std::uint64_t> total{0};
     alignas(64) std::uint32_t cancelWord = 0; // kernels read it without <atomic>
+    std::uint32_t exceptionsTold = 0;         // kernels count it without <atomic>
     std::atomic<bool> wasCancelled{false};
     std::mutex faultMutex;
     OxrtLaunchReport faultReport = {};

@@ -11,7 +11,8 @@ import pytest
 import optixc as ox
 
 HEAD = "import optixc as ox\nfrom optixc import float3, uint32\n\n\n"
-GUIDE = ('@ox.payload\nclass Ray:\n    a: uint32 = ox.payload_word(caller="w", ch="r")\n    b: uint32 = ox.payload_word(caller="r", ch="w")\n'
+GUIDE = ('@ox.payload\nclass Ray:\n    a: uint32 = ox.payload_word(caller="w", ch="r")\n'
+         '    b: uint32 = ox.payload_word(caller="r", ch="w")\n'
          "\n\n@ox.program\ndef __closesthit__c(ray: Ray):\n    {}\n")
 
 
@@ -35,7 +36,8 @@ def test_T058_words_that_nobody_writes_or_reads(tmp_path: Path, access: str) -> 
 
 
 def classes(numbers: range) -> str:
-    return "".join(f"@ox.payload\nclass P{n}:\n    w: uint32\n    x{n}: float\n\n\n@ox.program\ndef __miss__m{n}(p: P{n}):\n    p.w = uint32({n})\n\n\n"
+    return "".join(f"@ox.payload\nclass P{n}:\n    w: uint32\n    x{n}: float\n\n\n"
+                   f"@ox.program\ndef __miss__m{n}(p: P{n}):\n    p.w = uint32({n})\n\n\n"
                    for n in numbers)
 
 
@@ -46,7 +48,8 @@ def test_T059_at_most_eight_payload_classes_a_module(tmp_path: Path) -> None:
 
 
 def test_T061_equal_words_are_the_same_type(tmp_path: Path) -> None:
-    (tmp_path / "a.py").write_text(HEAD + "@ox.payload\nclass Mine:\n    w: uint32\n\n\n@ox.struct\nclass Params:\n    out: ox.Array[uint32]\n\n\n"
+    (tmp_path / "a.py").write_text(HEAD + "@ox.payload\nclass Mine:\n    w: uint32\n\n\n"
+                                   "@ox.struct\nclass Params:\n    out: ox.Array[uint32]\n\n\n"
                                    "params = ox.launch_params(Params)\n\n\n@ox.program\ndef __raygen__r():\n    ray = Mine(1)\n"
                                    "    ox.trace(ox.Traversable(0), float3(0.0), float3(1.0), payload=ray)\n    params.out[0] = ray.w\n")
     (tmp_path / "b.py").write_text(HEAD + "@ox.payload\nclass Theirs:\n    word: uint32\n\n\n@ox.program\ndef __miss__m(p: Theirs):\n"

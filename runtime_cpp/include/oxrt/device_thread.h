@@ -220,11 +220,21 @@ template <bool THROWS> OXRT_INLINE bool enterCallable(OxrtThread& thread, Place 
     return false;
 }
 
+/* What happens without an exception program: the first five exceptions of a launch are printed. */
+__attribute__((noinline, cold, unused)) static void tellException(OxrtThread& thread) {
+    if (__atomic_fetch_add(thread.launch->exceptionsTold, 1u, __ATOMIC_RELAXED) >= 5)
+        return;
+    print(thread, " ", "\n", "exception", thread.exceptionCode, "at launch index", thread.index[0], thread.index[1], thread.index[2],
+          thread.exceptionLine ? thread.exceptionLine : "");
+}
+
 /* The number of the exception program to run for the pending exception; it is not pending any more. */
 OXRT_INLINE int32_t takeException(OxrtThread& thread) {
     thread.exceptionPending = 0;
     thread.traceDepth = 0;
     const auto* header = reinterpret_cast<const OxrtRecordHeader*>(thread.launch->exceptionRecord);
+    if (!header)
+        tellException(thread);
     return header && header->pipelineUid == thread.launch->pipelineUid ? header->programs[0] : OXRT_NO_PROGRAM;
 }
 

@@ -174,6 +174,7 @@ typedef struct OxrtLaunch {
     uint32_t* cancel; /* non-zero: stop soon; read relaxed, polled by loops without a provable bound and between blocks */
     uint32_t maxTraceDepth; /* traces that may nest on the configured stack; the pipeline's own limit is compiled in */
     uint32_t validation;
+    uint32_t* exceptionsTold; /* exceptions without a program so far; the first five are printed */
 } OxrtLaunch;
 
 /* What one worker thread owns during a launch; the runtime makes it, generated code writes the fields after `launch`. */
