@@ -2,15 +2,11 @@
 
 from __future__ import annotations
 
+import importlib
 from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
-
-try:
-    import trimesh
-except ImportError:
-    trimesh = None
 
 
 @dataclass(frozen=True)
@@ -25,8 +21,10 @@ class Mesh:
 
 def load(path: Path) -> Mesh:
     """Any format that trimesh reads (OBJ, PLY, glTF, STL, ...), all parts in one mesh, y up."""
-    if trimesh is None:
-        raise SystemExit("loading a mesh file needs trimesh: pip install trimesh")
+    try:
+        trimesh = importlib.import_module("trimesh")
+    except ImportError as error:
+        raise SystemExit("loading a mesh file needs trimesh: pip install trimesh") from error
     if not path.is_file():
         raise SystemExit(f"there is no file {path}")
     mesh = trimesh.load(path, force="mesh")

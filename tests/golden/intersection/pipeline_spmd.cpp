@@ -93,6 +93,42 @@ struct DistanceProgramsLanes : oxrt::NoLanePrograms {
     static void intersection(Rays& trace, Mask mask, Payload& payload);
 };
 
+#line 34 "shader.py"
+template <class Programs> bool report_root(oxrt::Ray& trace, float t, oxrt::float3 center) {
+    oxrt::float3 n = oxrt::normalize(oxrt::getObjectRayOrigin(trace) + t * oxrt::getObjectRayDirection(trace) - center);
+    bool accepted = oxrt::reportIntersection<Programs>(trace, t, 1u, SpherePoint{n});
+#line 36 "shader.py"
+    if (oxrt::hasEnded(trace))
+        return {};
+#line 36 "shader.py"
+    return accepted;
+}
+
+#line 48 "shader.py"
+template <class Programs> void intersection_sphere(oxrt::Ray& trace, const Sphere& sphere) {
+    oxrt::float3 o = oxrt::getObjectRayOrigin(trace) - sphere.center;
+    oxrt::float3 d = oxrt::getObjectRayDirection(trace);
+    float a = oxrt::dot(d, d);
+#line 51 "shader.py"
+    float b = oxrt::dot(o, d);
+    float discriminant = b * b - a * (oxrt::dot(o, o) - sphere.radius * sphere.radius);
+    if (discriminant >= 0.0f) {
+        float root = oxrt::sqrt(discriminant);
+        bool result_ = report_root<Programs>(trace, (-b - root) / a, sphere.center);
+#line 55 "shader.py"
+        if (oxrt::hasEnded(trace))
+            return;
+#line 55 "shader.py"
+        if (!result_) {
+            oxrt::reportIntersection<Programs>(trace, (-b + root) / a, 2u, oxrt::attributeWords(oxrt::floatAsUint(root), 7u));
+#line 56 "shader.py"
+            if (oxrt::hasEnded(trace))
+                return;
+        }
+    }
+}
+
+#line 132 "pipeline.cpp"
 template <class Programs> Wide<bool> report_root_lanes([[maybe_unused]] Rays& trace, [[maybe_unused]] Mask mask, Wide<float> t,
         const Wide<oxrt::float3>& center);
 
@@ -174,7 +210,12 @@ void closesthit_sphere_lanes([[maybe_unused]] Rays& trace, [[maybe_unused]] Mask
     oxrt::assign(mask, found.back, (oxrt::getHitKind(trace) == 2u) | (point.normal.z > 0.0f));
 }
 
-#line 178 "pipeline.cpp"
+#line 214 "pipeline.cpp"
+void DistancePrograms::intersection(oxrt::Ray& trace, Payload&, const OxrtRecordHeader& record) {
+    if (record.programs[oxrt::SLOT_INTERSECTION] == number::intersection_sphere)
+        intersection_sphere<DistancePrograms>(trace, oxrt::recordData<Sphere>(record));
+}
+
 void DistanceProgramsLanes::closestHit(Rays& trace, Mask mask, Payload& payload) {
     const Wide<int32_t> program = oxrt::recordPrograms(trace.records, mask, oxrt::SLOT_CLOSESTHIT);
     if (const Mask own = mask & (program == int32_t(number::closesthit_sphere)); oxrt::any(own))
