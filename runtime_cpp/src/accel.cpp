@@ -112,11 +112,66 @@ void Accel::invalidate()
     if (instances) instances->removeHandles(*context);
 }
 
-void Accel::build(std::span<const OxrtBuildInput> inputs)
+std::vector<OxrtInstance> Accel::instanceInputs(std::span<const OxrtTraversableHandle> children) const
+{
+    if (!children.empty() && children.size() != instances->size())
+        fail(OXRT_ERROR_INVALID_VALUE, "%zu children for %u instances; give one for each, or none to keep them", children.size(),
+             instances->size());
+    std::vector<OxrtInstance> inputs(instances->size());
+    for (std::uint32_t i = 0; i < instances->size(); ++i) {
+        const OxrtInstanceView& made = instances->data()[i];
+        std::copy_n(made.objectToWorld, 12, inputs[i].transform);
+        inputs[i].instanceId = made.instanceId;
+        inputs[i].sbtOffset = made.sbtOffset;
+        inputs[i].visibilityMask = made.visibilityMask;
+        inputs[i].flags = made.flags;
+        inputs[i].traversable = !children.empty() ? children[i] : made.child ? made.child->handle : 0;
+    }
+    return inputs;
+}
+
+// What no update changes is shared, the rest built again from the copies of the inputs.
+std::shared_ptr<Accel> Accel::copy(std::span<const OxrtTraversableHandle> children) const
+{
+    if (source && children.empty()) return source->copy({});
+    if (view.type == OXRT_TRAVERSABLE_GAS && !children.empty())
+        fail(OXRT_ERROR_INVALID_VALUE, "%zu children for a structure of geometry, which has none", children.size());
+    auto made = std::make_shared<Accel>(context, OxrtAccelBuildOptions{buildFlags, motion});
+    if (!updatable() && children.empty()) {
+        made->share(shared_from_this());
+    } else if (source) {
+        return source->copy(children);
+    } else if (instances) {
+        const std::vector<OxrtInstance> kept = instanceInputs(children);
+        OxrtBuildInput input = {};
+        input.type = OXRT_BUILD_INPUT_INSTANCES;
+        input.numSbtRecords = 1;
+        input.instances = kept.data();
+        input.numPrimitives = kept.size();
+        made->build({&input, 1}, this);
+    } else {
+        std::vector<OxrtBuildInput> inputs;
+        for (const auto& geometry : geometries) inputs.push_back(geometry->asInput());
+        made->build(inputs);
+    }
+    context->addTraversable(made->handle(), made);
+    return made;
+}
+
+void Accel::share(std::shared_ptr<const Accel> original)
+{
+    view = original->view;
+    bounds = original->bounds;
+    depth = original->depth;
+    source = std::move(original);
+    view.handle = context->traversables.add(&view);
+}
+
+void Accel::build(std::span<const OxrtBuildInput> inputs, const Accel* original)
 {
     const auto begin = std::chrono::steady_clock::now();
     if (inputs[0].type == OXRT_BUILD_INPUT_INSTANCES)
-        instances = std::make_unique<Instances>(*context, instancesOf(inputs[0]), motion);
+        instances = std::make_unique<Instances>(*context, instancesOf(inputs[0]), motion, original ? original->instances.get() : nullptr);
     else
         buildGeometries(inputs);
 
@@ -262,7 +317,11 @@ RTCBounds Accel::boundsDuring(float, float) const
 OxrtAccelInfo Accel::info() const
 {
     constexpr float infinity = std::numeric_limits<float>::infinity();
-    OxrtAccelInfo result = {};
+    OxrtAccelInfo result = source ? source->info() : OxrtAccelInfo{};
+    if (source) {
+        result.handle = view.handle;
+        return result;
+    }
     result.handle = view.handle;
     const bool empty = !(bounds.lower_x <= bounds.upper_x);
     const float box[6] = {bounds.lower_x, bounds.lower_y, bounds.lower_z, bounds.upper_x, bounds.upper_y, bounds.upper_z};
@@ -311,6 +370,33 @@ OxrtResult oxrtAccelGetInfo(OxrtAccel accel, OxrtAccelInfo* info)
         const auto self = find(accel);
         if (!info) fail(OXRT_ERROR_INVALID_VALUE, "the result pointer `info` is NULL");
         *info = self->info();
+    });
+}
+
+OxrtResult oxrtAccelCompact(OxrtAccel accel, OxrtAccel* compacted)
+{
+    return guard([&] {
+        const auto self = find(accel);
+        self->context->attempt("ACCEL", [&] {
+            if (!compacted) fail(OXRT_ERROR_INVALID_VALUE, "the result pointer `compacted` is NULL");
+            *compacted = nullptr;
+            if (!self->mayCompact())
+                fail(OXRT_ERROR_INVALID_VALUE, "the accel was built without ALLOW_COMPACTION; build it with that flag to compact it");
+            *compacted = publish(self->copy({}));
+        });
+    });
+}
+
+OxrtResult oxrtAccelRelocate(OxrtAccel accel, const OxrtTraversableHandle* children, uint64_t numChildren, OxrtAccel* relocated)
+{
+    return guard([&] {
+        const auto self = find(accel);
+        self->context->attempt("ACCEL", [&] {
+            if (!relocated) fail(OXRT_ERROR_INVALID_VALUE, "the result pointer `relocated` is NULL");
+            *relocated = nullptr;
+            if (!children && numChildren != 0) fail(OXRT_ERROR_INVALID_VALUE, "children is NULL but numChildren is not 0");
+            *relocated = publish(self->copy({children, numChildren}));
+        });
     });
 }
 

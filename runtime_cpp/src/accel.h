@@ -16,7 +16,7 @@
 
 namespace oxrt {
 
-class Accel final : public Traversable {
+class Accel final : public Traversable, public std::enable_shared_from_this<Accel> {
 public:
     // Throws Failure and leaves nothing behind.
     static std::shared_ptr<Accel> make(std::shared_ptr<Context> context, const OxrtAccelBuildOptions& options,
@@ -24,6 +24,10 @@ public:
     // Use make(): this only prepares.
     Accel(std::shared_ptr<Context> owner, const OxrtAccelBuildOptions& options);
     ~Accel() override;
+
+    // Hit like this one, under another handle. An IAS gets `children`, one for each instance, unless there are none.
+    std::shared_ptr<Accel> copy(std::span<const OxrtTraversableHandle> children) const;
+    bool mayCompact() const { return (buildFlags & OXRT_BUILD_FLAG_ALLOW_COMPACTION) != 0; }
 
     void update(std::span<const OxrtBuildInput> inputs);
     // Makes the handles stale; may be called again.
@@ -35,7 +39,9 @@ public:
     const std::shared_ptr<Context> context;
 
 private:
-    void build(std::span<const OxrtBuildInput> inputs);
+    void build(std::span<const OxrtBuildInput> inputs, const Accel* original = nullptr);
+    void share(std::shared_ptr<const Accel> original);
+    std::vector<OxrtInstance> instanceInputs(std::span<const OxrtTraversableHandle> children) const;
     void buildGeometries(std::span<const OxrtBuildInput> inputs);
     void describe();
     void checkSameShape(std::span<const OxrtBuildInput> inputs) const;
@@ -48,6 +54,7 @@ private:
     std::vector<std::unique_ptr<Geometry>> geometries;
     std::vector<OxrtGeometry> geometryViews;
     std::unique_ptr<Instances> instances;
+    std::shared_ptr<const Accel> source; // whose structure this one shares
     RTCScene scene = nullptr;
     RTCBounds bounds = {};
     std::int64_t embreeBytes = 0;

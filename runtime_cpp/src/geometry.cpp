@@ -153,7 +153,29 @@ Geometry::Geometry(const OxrtBuildInput& input, std::uint32_t recordBase) : inpu
     view.recordOffsets = recordOffsets.data();
     view.vertices = vertices.data();
     view.indices = indices.data();
+    const std::size_t floatsPerKey = vertices.size() / view.keyCount;
+    for (std::uint32_t key = 0; key < view.keyCount; ++key) keys.push_back(vertices.data() + floatsPerKey * key);
     update(input);
+}
+
+OxrtBuildInput Geometry::asInput() const
+{
+    OxrtBuildInput input = {};
+    input.type = inputType;
+    input.numSbtRecords = view.recordCount;
+    input.flags = recordFlags.data();
+    input.sbtIndexOffsets = recordOffsets.data();
+    input.primitiveIndexOffset = view.primitiveIndexOffset;
+    input.numKeys = view.keyCount;
+    input.numPrimitives = view.primitiveCount;
+    if (inputType == OXRT_BUILD_INPUT_TRIANGLES) {
+        input.vertices = keys.data();
+        input.numVertices = view.vertexCount;
+        input.indices = indices.data();
+    } else {
+        input.aabbs = keys.data();
+    }
+    return input;
 }
 
 void Geometry::update(const OxrtBuildInput& input)

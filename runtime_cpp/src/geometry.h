@@ -7,6 +7,7 @@
 #include "oxrt/pipeline.h"
 
 #include <cstdint>
+#include <vector>
 
 namespace oxrt {
 
@@ -25,6 +26,9 @@ public:
     void update(const OxrtBuildInput& input);
     void refit(const EmbreeLibrary& embree, RTCScene scene, unsigned geomID) const;
 
+    // What would build this geometry again; it points into this one.
+    OxrtBuildInput asInput() const;
+
     const OxrtGeometry& geometry() const { return view; }
     std::uint32_t buildInputType() const { return inputType; }
     std::uint32_t needs() const;
@@ -41,6 +45,7 @@ private:
     Array<std::uint32_t> recordFlags;
     Array<std::uint32_t> recordOffsets;
     Array<float> vertices;
+    std::vector<const float*> keys; // where the vertices or boxes of each motion key begin
     Array<std::uint32_t> indices;
     bool indicesChanged = false; // by the last update
 };

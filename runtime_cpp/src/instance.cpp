@@ -40,7 +40,8 @@ void checkInstance(const OxrtInstance& instance, std::size_t number)
 
 } // namespace
 
-Instances::Instances(const Context& context, std::span<const OxrtInstance> instances, const OxrtMotionOptions& motionOptions)
+Instances::Instances(const Context& context, std::span<const OxrtInstance> instances, const OxrtMotionOptions& motionOptions,
+                     const Instances* original)
     : motion(motionOptions)
 {
     if (instances.size() > maxInstances)
@@ -58,7 +59,7 @@ Instances::Instances(const Context& context, std::span<const OxrtInstance> insta
         const std::uint64_t handle = instances[i].traversable;
         if (handle != 0) { // a null child is allowed and never hit
             auto [entry, isNew] = known.try_emplace(handle, 0);
-            if (isNew) entry->second = addChild(context, handle, i);
+            if (isNew) entry->second = addChild(context, handle, i, original);
             childNumbers[i] = entry->second;
             views[i].child = &children[entry->second].traversable->traversable();
         }
@@ -69,9 +70,12 @@ Instances::Instances(const Context& context, std::span<const OxrtInstance> insta
         fail(OXRT_ERROR_INVALID_VALUE, "the graph would be %u traversables deep; the limit is %u", graphDepth() + 1, maxGraphDepth);
 }
 
-std::uint32_t Instances::addChild(const Context& context, std::uint64_t handle, std::size_t number)
+std::uint32_t Instances::addChild(const Context& context, std::uint64_t handle, std::size_t number, const Instances* original)
 {
     std::shared_ptr<const Traversable> traversable = context.findTraversable(handle);
+    if (original && !traversable)
+        for (const Child& child : original->children)
+            if (child.traversable->handle() == handle) traversable = child.traversable;
     if (!traversable)
         fail(OXRT_ERROR_INVALID_VALUE,
              "instance %llu: traversable 0x%llx is not alive in this context (destroyed, never built, an instance's handle, or of another "

@@ -21,7 +21,9 @@ class Context;
 class Instances {
 public:
     // Throws Failure for instances that cannot be built. Keeps the children alive.
-    Instances(const Context& context, std::span<const OxrtInstance> instances, const OxrtMotionOptions& motion);
+    // `original`: whose children may be named as well when their handles are stale.
+    Instances(const Context& context, std::span<const OxrtInstance> instances, const OxrtMotionOptions& motion,
+              const Instances* original = nullptr);
 
     void attach(const EmbreeLibrary& embree, RTCDevice device, RTCScene scene, bool updatable);
 
@@ -48,7 +50,7 @@ private:
         std::vector<RTCBounds> bounds; // one for each time step of the user geometry
     };
 
-    std::uint32_t addChild(const Context& context, std::uint64_t handle, std::size_t number);
+    std::uint32_t addChild(const Context& context, std::uint64_t handle, std::size_t number, const Instances* original);
     void describe(const OxrtInstance& instance, OxrtInstanceView& view);
     void gatherNeeds();
     void boundChildren();

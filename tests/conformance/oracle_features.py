@@ -82,7 +82,7 @@ FEATURES: dict[str, Feature] = {
     "custom primitives": Feature(True, _scene(_gas({"type": "custom", "aabbs": [[0, 0, 0, 1, 1, 1]], "flags": [0], "numSbtRecords": 1}))),
     "instances": Feature(True, _scene(_gas(TRIANGLE), _ias("gas"))),
     "updates": Feature(True, _update),
-    "compaction": Feature(False, _compaction),
+    "compaction": Feature(True, _compaction),
     "spheres": Feature(False, _scene(_gas(SPHERES))),
     "curves": Feature(False, _scene(_gas(_curve("0x2503")))),
     "rocaps curves": Feature(False, _scene(_gas(_curve("0x2508")))),

@@ -89,6 +89,38 @@ def test_T240_a_compacted_structure_traces_alike(harness: Harness) -> None:
     assert distance(harness, compacted) == 10.0
 
 
+def test_T241_compaction_must_be_allowed(harness: Harness) -> None:
+    with pytest.raises(ox.InvalidValueError, match="ALLOW_COMPACTION"):
+        harness.context.accel_build(at_z(0.0)).compact()
+
+
+def test_T242_compacted_structures_can_be_updated_on_their_own(harness: Harness) -> None:
+    accel = harness.context.accel_build(at_z(0.0), build_flags=UPDATE | ox.BuildFlags.ALLOW_COMPACTION)
+    compacted = accel.compact()
+    compacted.update(at_z(2.0))
+    assert (distance(harness, accel), distance(harness, compacted)) == (10.0, 8.0)
+
+
+def test_T243_T244_relocated_structures(harness: Harness) -> None:
+    low, high = harness.context.accel_build(at_z(0.0)), harness.context.accel_build(at_z(4.0))
+    top = harness.context.accel_build([ox.BuildInputInstances([ox.Instance(low, EYE)])])
+    moved, kept = low.relocate(), top.relocate()
+    replaced = top.relocate([high])
+    low.destroy()
+    top.destroy()
+    assert moved.handle != low.handle
+    assert [distance(harness, one) for one in (moved, kept, replaced)] == [10.0, 10.0, 6.0]
+
+
+def test_T245_relocation_takes_all_children_or_none(harness: Harness) -> None:
+    low = harness.context.accel_build(at_z(0.0))
+    top = harness.context.accel_build([ox.BuildInputInstances([ox.Instance(low, EYE), ox.Instance(low, EYE)])])
+    with pytest.raises(ox.InvalidValueError, match="1 children for 2 instances"):
+        top.relocate([low])
+    with pytest.raises(ox.InvalidValueError, match="has none"):
+        low.relocate([low])
+
+
 def test_degenerate_triangles_become_valid_by_an_update(harness: Harness) -> None:
     # Recorded: 13_degenerate-degenerate_then_updated_valid.
     accel = harness.context.accel_build([ox.BuildInputTriangles(np.zeros((3, 3), np.float32))], build_flags=UPDATE)

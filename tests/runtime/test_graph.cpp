@@ -204,6 +204,39 @@ TEST(updatesMoveNestedInstances)
     CHECK_FAILS(oxrtAccelUpdate(accel, &input, 1), OXRT_ERROR_INVALID_VALUE, "keeps the traversables");
 }
 
+TEST(copiesOutliveWhatTheyWereMadeOf)
+{
+    Fixture fixture;
+    for (const int allowed : {0, int(OXRT_BUILD_FLAG_ALLOW_UPDATE)}) {
+        const auto flags = static_cast<std::uint32_t>(allowed);
+        Triangles triangles = square(0);
+        OxrtAccel gas = fixture.build(triangles.input(), flags | OXRT_BUILD_FLAG_ALLOW_COMPACTION);
+        OxrtAccel compacted = nullptr;
+        CHECK_SUCCESS(oxrtAccelCompact(gas, &compacted));
+        CHECK(Fixture::handleOf(compacted) != Fixture::handleOf(gas));
+        CHECK(Fixture::infoOf(compacted).memoryUsage <= Fixture::infoOf(gas).memoryUsage * 2);
+        if (flags) { // an update of one leaves the other alone
+            Triangles higher = square(3);
+            const OxrtBuildInput input = higher.input();
+            CHECK_SUCCESS(oxrtAccelUpdate(gas, &input, 1));
+        }
+        OxrtAccel ias = fixture.build(instanceInput({instanceOf(Fixture::handleOf(gas), 0, 0, 1)}), flags);
+        CHECK_SUCCESS(oxrtAccelDestroy(gas));
+        CHECK_EQUAL(traceAt(fixture, Fixture::handleOf(compacted)).t, 1.0f);
+        OxrtAccel relocated = nullptr;
+        CHECK_SUCCESS(oxrtAccelRelocate(ias, nullptr, 0, &relocated));
+        CHECK_EQUAL(traceAt(fixture, Fixture::handleOf(relocated)).t, flags ? 5.0f : 2.0f);
+        const Handle other = Fixture::handleOf(compacted);
+        OxrtAccel replaced = nullptr;
+        CHECK_SUCCESS(oxrtAccelRelocate(ias, &other, 1, &replaced));
+        CHECK_SUCCESS(oxrtAccelDestroy(ias));
+        CHECK_EQUAL(traceAt(fixture, Fixture::handleOf(replaced)).t, 2.0f);
+        CHECK_FAILS(oxrtAccelRelocate(relocated, &other, 2, &replaced), OXRT_ERROR_INVALID_VALUE, "2 children");
+        CHECK_FAILS(oxrtAccelRelocate(compacted, &other, 1, &replaced), OXRT_ERROR_INVALID_VALUE, "has none");
+        CHECK_FAILS(oxrtAccelCompact(relocated, &replaced), OXRT_ERROR_INVALID_VALUE, "ALLOW_COMPACTION");
+    }
+}
+
 TEST(badTransformsAreRefused)
 {
     Fixture fixture;

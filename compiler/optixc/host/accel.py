@@ -12,7 +12,7 @@ from optixc.enums_scene import BuildFlags
 from optixc.errors import InvalidValueError
 from optixc.host import library
 from optixc.host.context import Context
-from optixc.host.inputs import BuildInput, MotionOptions, pack_inputs
+from optixc.host.inputs import BuildInput, MotionOptions, pack_inputs, take_handle
 from optixc.host.sbt_reach import parts_of
 
 
@@ -89,16 +89,29 @@ class Accel:
         return self
 
     def compact(self) -> Accel:
-        """This accel: Embree's builds are compact already, so there is nothing to copy. Needs ALLOW_COMPACTION, as in OptiX."""
-        if not self._build_flags & BuildFlags.ALLOW_COMPACTION:
-            raise InvalidValueError("compact() needs an accel that was built with BuildFlags.ALLOW_COMPACTION")
-        self._live()
-        return self
+        """Another accel that is hit like this one, which may be destroyed then; needs ALLOW_COMPACTION, as in OptiX.
 
-    def relocate(self) -> Accel:
-        """This accel: handles are no addresses here, so a structure never has to be told that it moved."""
-        self._live()
-        return self
+        Embree's builds are compact already: what cannot be updated shares its memory, the rest is built again.
+        """
+        made = library.ffi().new("OxrtAccel*")
+        library.check(library.lib().oxrtAccelCompact(self._live(), made))
+        return self._copied(made[0], self._children)
+
+    def relocate(self, children: Sequence[Any] | None = None) -> Accel:
+        """Another accel that is hit like this one; of an IAS with other children where they are given, one for each instance."""
+        ffi = library.ffi()
+        handles = ffi.NULL if children is None else ffi.new("uint64_t[]", [take_handle(child, "relocate") for child in children])
+        made = ffi.new("OxrtAccel*")
+        library.check(library.lib().oxrtAccelRelocate(self._live(), handles, 0 if children is None else len(children), made))
+        return self._copied(made[0], self._children if children is None else tuple(children))
+
+    def _copied(self, accel: Any, children: tuple[Any, ...]) -> Accel:
+        """A Python object for a copy that the runtime made."""
+        made: Accel = object.__new__(Accel)
+        made._accel, made._context, made._build_flags, made._motion = accel, self._context, self._build_flags, self._motion
+        made._inputs, made._children = (), children
+        made._handle = int(made._info().handle)
+        return made
 
     def destroy(self) -> None:
         """Makes the handle stale; memory goes when no IAS and no launch uses it. Nothing happens the second time."""

@@ -148,6 +148,11 @@ OXRT_API OxrtResult oxrtAccelBuild(OxrtContext context, const OxrtAccelBuildOpti
    accel must be updated as well. */
 OXRT_API OxrtResult oxrtAccelUpdate(OxrtAccel accel, const OxrtBuildInput* inputs, unsigned numInputs);
 OXRT_API OxrtResult oxrtAccelGetInfo(OxrtAccel accel, OxrtAccelInfo* info);
+/* Another accel that is hit like this one, under a handle of its own; this one may be destroyed and is not changed by updates of the other.
+   Needs ALLOW_COMPACTION. Embree's structures are compact as built: what cannot be updated shares its memory. */
+OXRT_API OxrtResult oxrtAccelCompact(OxrtAccel accel, OxrtAccel* compacted);
+/* The same without that flag; of an IAS with other children where `children` is not NULL: one handle for each instance. */
+OXRT_API OxrtResult oxrtAccelRelocate(OxrtAccel accel, const OxrtTraversableHandle* children, uint64_t numChildren, OxrtAccel* relocated);
 /* The handle is stale from here on; memory goes when no IAS and no launch uses it. */
 OXRT_API OxrtResult oxrtAccelDestroy(OxrtAccel accel);
 
