@@ -125,7 +125,7 @@ template <int W> OXRT_INLINE Lanes<uint32_t, W> getRayVisibilityMask(const RayLa
 template <int W> OXRT_INLINE Lanes<float, W> nextUp(Lanes<float, W> x) {
     const Lanes<uint32_t, W> bits = floatAsUint(x);
     const Lanes<float, W> away = uintAsFloat(select(x > 0.0f, bits + 1u, bits - 1u));
-    const Lanes<float, W> next = select(abs(x) < __FLT_MIN__, __FLT_MIN__, away);
+    const Lanes<float, W> next = select(abs(x) < NEXT_TO_ZERO, NEXT_TO_ZERO, away);
     return select(x < __builtin_inff(), next, x);
 }
 template <int W> OXRT_INLINE Lanes<float, W> nextDown(Lanes<float, W> x) { return -nextUp(-x); }

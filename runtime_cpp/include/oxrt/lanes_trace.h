@@ -15,15 +15,21 @@ inline namespace OXRT_ISA {
 
 /* ---- queries ------------------------------------------------------------------------------------------------------------------ */
 
-/* Whether the active rays start at one point, and go in about one direction: within 25 degrees of the first. */
+/* Whether to trace the active rays together: at least half the lanes, all directions within 60 degrees of the first ray's, all origins
+   within a quarter of its length. Measured on ambient occlusion, in strata (a quarter faster) and without (no slower), and on path tracing
+   (no slower); the angle alone or the origins alone make some of them slower by half. */
 template <int W>
-OXRT_INLINE bool areCoherent(Lanes<bool, W> mask, const Wide<float3, W>& origin, const Wide<float3, W>& direction) {
-    const int lane = firstLane(mask);
-    if (any(mask & ((origin.x != origin.x[lane]) | (origin.y != origin.y[lane]) | (origin.z != origin.z[lane]))))
+OXRT_INLINE bool areCoherent(Lanes<bool, W> mask, const Wide<float3, W>& origin, const Wide<float3, W>& direction, Lanes<float, W> tmax) {
+    if (__builtin_popcount(mask.bits()) < W / 2)
         return false;
+    const int lane = firstLane(mask);
+    const Wide<float3, W> apart = origin - float3(origin.x[lane], origin.y[lane], origin.z[lane]);
     const float3 first(direction.x[lane], direction.y[lane], direction.z[lane]);
+    const float reach = 0.25f * tmax[lane];
+    const float length2 = dot(first, first);
     const Lanes<float, W> cosine = dot(direction, first);
-    return none(mask & !(cosine * abs(cosine) > dot(direction, direction) * (0.82f * dot(first, first))));
+    const Lanes<bool, W> isNear = dot(apart, apart) <= reach * reach * length2;
+    return none(mask & !(isNear & (cosine * abs(cosine) > dot(direction, direction) * (0.25f * length2))));
 }
 
 /* The masked lanes as one packet without callbacks; the lanes that hit something. */
@@ -345,7 +351,7 @@ OXRT_INLINE void trace(LanesThread<W>& thread, Lanes<bool, W> mask, uint64_t han
     ray.missIndex = missIndex;
     if constexpr (Scalar::isValidated)
         checkRays(ray, mask, handle, place);
-    traceNow<Programs, Flags>(ray, mask, payload, areCoherent(mask, origin, direction), place);
+    traceNow<Programs, Flags>(ray, mask, payload, areCoherent(mask, origin, direction, tmax), place);
     leaveTrace<Scalar>(*thread.thread);
 }
 
