@@ -3,6 +3,11 @@
 from __future__ import annotations
 
 import pytest
+from hypothesis import Phase, settings
+
+# Explaining a failure runs the test under a tracer, for many minutes where each example renders.
+settings.register_profile("optixc", phases=[phase for phase in Phase if phase is not Phase.explain])
+settings.load_profile("optixc")
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:
