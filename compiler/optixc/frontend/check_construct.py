@@ -9,6 +9,7 @@ from optixc.frontend.arguments import bind_arguments, check_written, refuse_star
 from optixc.frontend.checked import Argument, ConstructUse, ConvertUse, DefaultArgument, DefaultExpression, ExprInfo
 from optixc.frontend.context import Context, describe, range_of
 from optixc.frontend.conversions import can_convert, fits
+from optixc.frontend.fold import rounded
 from optixc.frontend.places import check_no_alias
 from optixc.frontend.symbols import StructSymbol
 from optixc.frontend.weak import INVALID, ConstantValue, Invalid, WeakInt, is_number, is_weak, widened
@@ -66,7 +67,7 @@ def _constant_scalar(c: Context, node: ast.Call, info: ExprInfo, target: t.Scala
     if target.kind is t.ScalarKind.BOOL:
         constant: ConstantValue = bool(value)
     elif target.kind is t.ScalarKind.FLOAT:
-        constant = float(value)
+        constant = rounded(float(value), target.bits)
     elif isinstance(value, float) and not math.isfinite(value):
         return c.error("OX313", node, f"{target} does not hold {value}", f"expected {range_of(target)}")
     else:

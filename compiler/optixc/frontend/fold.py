@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import ast
 import math
+import struct
 
 from optixc.frontend import builtin_names as names
 from optixc.frontend.declarations import Declarations
@@ -135,3 +136,13 @@ def constant_of(scope: Declarations, node: ast.expr) -> ConstantValue | None:
             if inner is not None and name.startswith(("int", "uint")):
                 return int(inner) if math.isfinite(inner) else None
     return None
+
+
+def rounded(value: float, bits: int) -> float:
+    """The number of a floating type of 16, 32 or 64 bits nearest to the value; infinite beyond its range."""
+    code = {16: "e", 32: "f", 64: "d"}[bits]
+    try:
+        number: float = struct.unpack(code, struct.pack(code, value))[0]
+    except OverflowError:
+        return math.copysign(math.inf, value)
+    return number

@@ -126,8 +126,11 @@ def _binary(low: FunctionLowering, node: ast.BinOp, op: BinaryOp, left: Expr, ri
     return Binary(op, left, right, type_, span)
 
 
-def lower_place(low: FunctionLowering, node: ast.expr, block: Block, keep_indices: bool) -> Expr:
-    """A name, field, component or element as a place; `keep_indices` evaluates indices now, for places used twice."""
+def lower_place(low: FunctionLowering, node: ast.expr, block: Block, keep_indices: bool, is_target: bool = False) -> Expr:
+    """A name, field, component or element as a place; `keep_indices` evaluates indices now, for places used twice.
+
+    Of what `is_target` nothing is copied on the way, whatever its indices do.
+    """
     info = low.info(node)
     match info.use:
         case LocalUse(local=local):
@@ -144,10 +147,10 @@ def lower_place(low: FunctionLowering, node: ast.expr, block: Block, keep_indice
     assert isinstance(node, ast.Attribute | ast.Subscript)
     match info.use:
         case FieldUse(name=name, stored=stored):
-            return FieldRef(_base(low, node.value, block, keep_indices), name, stored)
+            return FieldRef(_base(low, node.value, block, keep_indices, is_target), name, stored)
         case SwizzleUse(components=components):
             assert isinstance(info.type, t.Scalar | t.Vector)
-            base = _base(low, node.value, block, keep_indices)
+            base = _base(low, node.value, block, keep_indices, is_target)
             return ComponentRef(base, components, info.type)
         case TupleUse(index=index):
             base = lower_expression(low, node.value, block)
@@ -155,8 +158,10 @@ def lower_place(low: FunctionLowering, node: ast.expr, block: Block, keep_indice
                 return base.arguments[index]
             return TupleItem(base, index, t.VOID if info.type is None else default_type(info.type))
         case IndexUse(index=index, stored=stored):
-            parts = [partial(_base_of, low, node.value, keep_indices), partial(lower_expression, low, index)]
-            base, position = low.in_order_by(parts, block, [node.value, index], places=(0,) if keep_indices else ())
+            # A fixed array is a reference: what the index writes to it is read. A vector or matrix is taken before the index is evaluated.
+            is_place = keep_indices or is_target or isinstance(low.info(node.value).type, t.FixedArray)
+            parts = [partial(_base_of, low, node.value, is_place), partial(lower_expression, low, index)]
+            base, position = low.in_order_by(parts, block, [node.value, index], places=(0,) if is_place else ())
             return IndexRef(base, _kept(low, position, block, index, keep_indices), stored)
         case ElementUse(indices=indices, stored=stored):
             array, *positions = low.in_order([node.value, *indices], block)
@@ -169,10 +174,10 @@ def _base_of(low: FunctionLowering, node: ast.expr, keep_indices: bool, block: B
     return _base(low, node, block, keep_indices)
 
 
-def _base(low: FunctionLowering, node: ast.expr, block: Block, keep_indices: bool) -> Expr:
+def _base(low: FunctionLowering, node: ast.expr, block: Block, keep_indices: bool, is_target: bool = False) -> Expr:
     """What a field or component is taken of: a place where possible, so that nothing is copied."""
     if isinstance(node, ast.Name | ast.Attribute | ast.Subscript) and low.info(node).constant is None and node not in low.substitutes:
-        place = lower_place(low, node, block, keep_indices)
+        place = lower_place(low, node, block, keep_indices, is_target)
         return place if keep_indices or not isinstance(place.type, t.Vector | t.Scalar) else read(place)
     return lower_expression(low, node, block)
 

@@ -190,7 +190,7 @@ def _store(low: FunctionLowering, place: Expr, value: Expr, node: ast.AST, block
 
 
 def _target_place(low: FunctionLowering, target: ast.expr, block: Block) -> Expr:
-    return lower_place(low, target, block, keep_indices=False)
+    return lower_place(low, target, block, keep_indices=False, is_target=True)
 
 
 def _assign_name(low: FunctionLowering, target: ast.Name, value: Expr, block: Block, before: int) -> None:
@@ -216,7 +216,7 @@ def _assign_value(low: FunctionLowering, target: ast.expr, value: Expr, block: B
             local = low.instance.bindings[target]
             block.emit(Assign(LocalRef(local), convert(value, local.type, low.span(target)), low.span(target)))
         case ast.Attribute() | ast.Subscript():
-            place = lower_place(low, target, block, keep_indices=False)
+            place = lower_place(low, target, block, keep_indices=False, is_target=True)
             _store(low, place, value, target, block)
         case ast.Tuple(elts=elements) | ast.List(elts=elements):
             if isinstance(value.type, t.Vector):

@@ -25,8 +25,9 @@ def fit(value: Number, scalar: Scalar) -> Number:
             return wrapped - (1 << scalar.bits) if wrapped >> (scalar.bits - 1) else wrapped
 
 
-def convert(value: Number, scalar: Scalar) -> Number:
+def convert(value: Number, scalar: Scalar, source: Scalar | None = None) -> Number:
     """A conversion between scalar types: float to integer truncates and saturates, NaN gives 0."""
+    value = value if source is None else fit(value, source)
     is_integer = scalar.kind in (ScalarKind.INT, ScalarKind.UINT)
     if isinstance(value, float) and is_integer:
         lowest = -(1 << (scalar.bits - 1)) if scalar.kind is ScalarKind.INT else 0
@@ -39,6 +40,7 @@ def convert(value: Number, scalar: Scalar) -> Number:
 
 def binary(op: BinaryOp, left: Number, right: Number, operand: Scalar) -> Number | None:
     """`left op right` of operands of one type; comparisons give a bool."""
+    left, right = fit(left, operand), fit(right, operand)
     compared = _compare(op, left, right)
     if compared is not None:
         return compared

@@ -107,7 +107,7 @@ def fold(expression: Expr) -> Expr:
             return Literal(picked if isinstance(type_, Vector) else picked[0], type_)
         case Select(condition=Literal(value=bool(value))):
             return expression.if_true if value else expression.if_false
-        case Convert(operand=Literal(value=value, type=Scalar()), type=Scalar() as target) if not isinstance(value, tuple):
-            return Literal(arithmetic.convert(value, target), target)
+        case Convert(operand=Literal(value=value, type=Scalar() as source), type=Scalar() as target) if not isinstance(value, tuple):
+            return Literal(arithmetic.convert(value, target, source), target)
         case _:
             return expression
