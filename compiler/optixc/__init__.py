@@ -21,8 +21,16 @@ from optixc.host.bound_values import BoundValue
 from optixc.host.context import OptixcWarning
 from optixc.host.groups import Module, Program, ProgramGroup, Record
 from optixc.host.image import read_image, write_image
+from optixc.host.input_curves import BuildInputCurves, BuildInputSpheres
 from optixc.host.inputs import BuildInputCustomPrimitives, BuildInputInstances, BuildInputTriangles, Instance, MotionOptions
 from optixc.host.matrices import float3x3, float3x4, float4x4
+from optixc.host.micromap_curve import (
+    barycentrics_to_micromap_index,
+    base_barycentrics_to_micro_barycentrics,
+    micromap_index_to_base_barycentrics,
+)
+from optixc.host.opacity import BuildInputOpacityMicromap, OpacityMicromap, OpacityMicromapArray
+from optixc.host.opacity_bake import BakedOpacity, bake_opacity_micromap
 from optixc.host.pipeline import Pipeline, PipelineReport
 from optixc.host.sbt import ShaderBindingTable
 from optixc.host.scalars import float16, float32, float64, int8, int16, int32, int64, uint8, uint16, uint32, uint64
@@ -86,9 +94,13 @@ __all__ = [
     "Array",
     "Array2",
     "Array3",
+    "BakedOpacity",
     "BoundValue",
+    "BuildInputCurves",
     "BuildInputCustomPrimitives",
     "BuildInputInstances",
+    "BuildInputOpacityMicromap",
+    "BuildInputSpheres",
     "BuildInputTriangles",
     "CompileError",
     "DeviceContext",
@@ -96,6 +108,8 @@ __all__ = [
     "Instance",
     "Module",
     "MotionOptions",
+    "OpacityMicromap",
+    "OpacityMicromapArray",
     "OptixcWarning",
     "Pipeline",
     "PipelineCompileOptions",
@@ -113,6 +127,9 @@ __all__ = [
     "Traversable",
     "__version__",
     "attributes",
+    "bake_opacity_micromap",
+    "barycentrics_to_micromap_index",
+    "base_barycentrics_to_micro_barycentrics",
     "bool2",
     "bool3",
     "bool4",
@@ -150,6 +167,7 @@ __all__ = [
     "longlong2",
     "longlong3",
     "longlong4",
+    "micromap_index_to_base_barycentrics",
     "nan",
     "payload",
     "payload_word",

@@ -10,7 +10,7 @@ from typing import Any
 from optixc import driver
 from optixc.cache import Cache
 from optixc.enums_program import ProgramGroupKind
-from optixc.enums_scene import BuildFlags
+from optixc.enums_scene import BuildFlags, OpacityMicromapFlags
 from optixc.errors import DiskCacheInvalidPathError, DiskCachePermissionError, InvalidValueError, OptixError
 from optixc.host import transforms
 from optixc.host.accel import Accel
@@ -18,6 +18,7 @@ from optixc.host.bound_values import NO_ANNOTATION, merge, plain_values
 from optixc.host.context import LOG_ERROR, LOG_PRINT, LOG_WARNING, Context, LogCallback
 from optixc.host.groups import Module, Program, ProgramGroup
 from optixc.host.inputs import BuildInput, MotionOptions
+from optixc.host.opacity import OpacityMicromapArray, build_array
 from optixc.host.pipeline import Pipeline
 from optixc.host.tasks import Task, TaskModule
 from optixc.options import CompileOptions, PipelineCompileOptions, Simd
@@ -228,3 +229,16 @@ class DeviceContext(Context):
         """A traversable: `child` under scale, rotation and translation of shape (num_keys, 16), blended by component and the quaternion
         normalised; members in OptiX's order sx a b pvx sy c pvy sz pvz qx qy qz qw tx ty tz. By default over the times 0 to 1."""
         return transforms.srt_motion_transform(self, child, keys, motion_options)
+
+    def opacity_micromap_array_build(
+        self,
+        data: Any,
+        descs: Any = None,
+        histogram: Any = None,
+        *,
+        flags: OpacityMicromapFlags | int = OpacityMicromapFlags.NONE,
+    ) -> OpacityMicromapArray:
+        """Micromaps for triangles: a list of OpacityMicromap; or raw bytes (uint8) with `descs`, rows of (byte_offset, subdivision_level,
+        format), and optionally `histogram`, rows of (count, subdivision_level, format), which must agree with them."""
+        _ = self.handle
+        return build_array(self, data, descs, histogram, flags)

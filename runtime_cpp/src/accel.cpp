@@ -16,7 +16,8 @@ namespace {
 constexpr std::uint32_t knownBuildFlags = OXRT_BUILD_FLAG_ALLOW_UPDATE | OXRT_BUILD_FLAG_ALLOW_COMPACTION |
                                           OXRT_BUILD_FLAG_PREFER_FAST_TRACE | OXRT_BUILD_FLAG_PREFER_FAST_BUILD |
                                           OXRT_BUILD_FLAG_ALLOW_RANDOM_VERTEX_ACCESS | OXRT_BUILD_FLAG_ALLOW_RANDOM_INSTANCE_ACCESS |
-                                          OXRT_BUILD_FLAG_NOT_ROBUST;
+                                          OXRT_BUILD_FLAG_ALLOW_OPACITY_MICROMAP_UPDATE |
+                                          OXRT_BUILD_FLAG_ALLOW_DISABLE_OPACITY_MICROMAPS | OXRT_BUILD_FLAG_NOT_ROBUST;
 constexpr std::uint64_t maxPrimitivesPerGas = std::uint64_t(1) << 29;
 constexpr std::uint64_t maxRecordsPerGas = std::uint64_t(1) << 24;
 
@@ -59,6 +60,9 @@ void checkInputs(std::span<const OxrtBuildInput> inputs, const OxrtMotionOptions
             fail(OXRT_ERROR_INVALID_VALUE, "input %u is of type 0x%x but input 0 of type 0x%x; make one accel per type and instance them",
                  i, inputs[i].type, inputs[0].type);
         if (inputs[i].type == OXRT_BUILD_INPUT_INSTANCES) continue;
+        if (inputs[i].type == OXRT_BUILD_INPUT_CURVES && inputs[i].curveType != inputs[0].curveType)
+            fail(OXRT_ERROR_INVALID_VALUE, "input %u has curve type 0x%x but input 0 has 0x%x; make one accel per type and instance them", i,
+                 inputs[i].curveType, inputs[0].curveType);
         Geometry::check(inputs[i], i);
         checkKeys(inputs[i], i, motion);
         primitives += inputs[i].numPrimitives;
@@ -200,7 +204,9 @@ void Accel::buildGeometries(std::span<const OxrtBuildInput> inputs)
         geometries.push_back(std::make_unique<Geometry>(input, recordBase));
         recordBase += input.numSbtRecords;
     }
-    geometryViews.resize(geometries.size()); // never again: Embree keeps pointers to them
+    std::size_t extras = 0;
+    for (const auto& geometry : geometries) extras += geometry->hasExtra();
+    geometryViews.resize(geometries.size() + extras); // never again: Embree keeps pointers to them
 }
 
 void Accel::setUpScene()
@@ -223,6 +229,12 @@ void Accel::setUpScene()
     if (instances) instances->attach(embree, context->device, scene, updatable());
     for (unsigned i = 0; i < geometries.size(); ++i)
         geometries[i]->attach(embree, context->device, scene, i, geometryViews[i], updatable());
+    auto extra = static_cast<unsigned>(geometries.size());
+    for (unsigned i = 0; i < geometries.size(); ++i)
+        if (geometries[i]->hasExtra()) {
+            geometries[i]->attachExtra(embree, context->device, scene, i, extra, geometryViews[i], geometryViews[extra], updatable());
+            ++extra;
+        }
 }
 
 void Accel::commit()
@@ -245,7 +257,7 @@ void Accel::describe()
     for (const auto& geometry : geometries) view.needs |= geometry->needs();
     view.type = instances ? OXRT_TRAVERSABLE_IAS : OXRT_TRAVERSABLE_GAS;
     view.geometries = geometryViews.data();
-    view.geometryCount = static_cast<std::uint32_t>(geometryViews.size());
+    view.geometryCount = static_cast<std::uint32_t>(geometries.size());
     view.keyCount = motion.numKeys;
     view.motionFlags = motion.flags;
     view.timeBegin = motion.timeBegin;
@@ -281,6 +293,8 @@ void Accel::checkSameShape(std::span<const OxrtBuildInput> inputs) const
                  "input %u: an update keeps type, primitive, vertex, record and key counts of the build (%u primitives, %llu vertices, %u "
                  "records)",
                  i, built.primitiveCount, static_cast<unsigned long long>(built.vertexCount), built.recordCount);
+        if (!(buildFlags & OXRT_BUILD_FLAG_ALLOW_OPACITY_MICROMAP_UPDATE) && !geometries[i]->hasSameMicromaps(input))
+            fail(OXRT_ERROR_INVALID_VALUE, "input %u: an update with other opacity micromaps needs ALLOW_OPACITY_MICROMAP_UPDATE", i);
     }
 }
 
@@ -304,7 +318,11 @@ void Accel::update(std::span<const OxrtBuildInput> inputs)
     for (unsigned i = 0; i < geometries.size(); ++i) {
         geometries[i]->update(inputs[i]);
         geometries[i]->refit(context->embree, scene, i);
+        geometryViews[i].opacityMicromaps = geometries[i]->geometry().opacityMicromaps;
     }
+    auto extra = static_cast<unsigned>(geometries.size());
+    for (const auto& geometry : geometries)
+        if (geometry->hasExtra()) geometry->refitExtra(context->embree, scene, extra++);
     commit();
     embreeBytes += context->embreeBytes - bytesBefore;
 }

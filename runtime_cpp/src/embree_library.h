@@ -35,6 +35,8 @@ namespace oxrt {
     USE(rtcSetSharedGeometryBuffer)                                                                                                        \
     USE(rtcUpdateGeometryBuffer)                                                                                                           \
     USE(rtcSetGeometryEnableFilterFunctionFromArguments)                                                                                   \
+    USE(rtcSetGeometryIntersectFilterFunction)                                                                                             \
+    USE(rtcSetGeometryOccludedFilterFunction)                                                                                              \
     USE(rtcSetGeometryUserPrimitiveCount)                                                                                                  \
     USE(rtcSetGeometryBoundsFunction)                                                                                                      \
     USE(rtcSetGeometryIntersectFunction)                                                                                                   \

@@ -1,6 +1,7 @@
 // See geometry.h.
 #include "geometry.h"
 
+#include "curve_basis.h"
 #include "error.h"
 
 #include <algorithm>
@@ -41,7 +42,8 @@ void checkCounts(const OxrtBuildInput& input, unsigned number)
              input.primitiveIndexOffset, static_cast<unsigned long long>(input.numPrimitives));
 }
 
-// One array per motion key.
+} // namespace
+
 void checkKeys(const float* const* keys, const OxrtBuildInput& input, unsigned number, const char* name)
 {
     if (!keys)
@@ -50,6 +52,8 @@ void checkKeys(const float* const* keys, const OxrtBuildInput& input, unsigned n
     for (std::uint32_t key = 0; key < std::max(1u, input.numKeys); ++key)
         if (!keys[key]) fail(OXRT_ERROR_INVALID_VALUE, "input %u: %s[%u] is NULL", number, name, key);
 }
+
+namespace {
 
 void checkTriangles(const OxrtBuildInput& input, unsigned number)
 {
@@ -117,19 +121,45 @@ void Geometry::check(const OxrtBuildInput& input, unsigned number)
         checkCounts(input, number);
         checkRecords(input, number);
         checkTriangles(input, number);
+        if (input.opacityMicromap) checkMicromaps(*input.opacityMicromap, input.numPrimitives, number);
         break;
     case OXRT_BUILD_INPUT_CUSTOM_PRIMITIVES:
         checkCounts(input, number);
         checkRecords(input, number);
         if (input.numPrimitives != 0) checkKeys(input.aabbs, input, number, "aabbs");
         break;
+    case OXRT_BUILD_INPUT_SPHERES:
+        checkCounts(input, number);
+        checkRecords(input, number);
+        checkSpheres(input, number);
+        break;
+    case OXRT_BUILD_INPUT_CURVES:
+        checkCounts(input, number);
+        checkRecords(input, number);
+        checkCurves(input, number);
+        break;
     default:
         fail(OXRT_ERROR_INVALID_VALUE,
-             "input %u: type is 0x%x, which is no geometry; give OXRT_BUILD_INPUT_TRIANGLES or _CUSTOM_PRIMITIVES", number, input.type);
+             "input %u: type is 0x%x, which is no geometry; give OXRT_BUILD_INPUT_TRIANGLES, _CUSTOM_PRIMITIVES, _CURVES or _SPHERES", number,
+             input.type);
     }
 }
 
-Geometry::Geometry(const OxrtBuildInput& input, std::uint32_t recordBase) : inputType(input.type)
+namespace {
+
+std::unique_ptr<Shape> makeShape(const OxrtBuildInput& input)
+{
+    if (input.type == OXRT_BUILD_INPUT_SPHERES) return makeSpheres(input);
+    if (input.type != OXRT_BUILD_INPUT_CURVES) return nullptr;
+    CurveKind kind;
+    findCurveKind(input.curveType, kind);
+    if (kind.isRibbon) return makeRibbons(input);
+    return kind.isRounded ? makeRoundedCurves(input) : makeCurves(input);
+}
+
+} // namespace
+
+Geometry::Geometry(const OxrtBuildInput& input, std::uint32_t recordBase) : inputType(input.type), shape(makeShape(input))
 {
     view.primitiveCount = static_cast<std::uint32_t>(input.numPrimitives);
     view.primitiveIndexOffset = input.primitiveIndexOffset;
@@ -144,7 +174,7 @@ Geometry::Geometry(const OxrtBuildInput& input, std::uint32_t recordBase) : inpu
         view.vertexCount = input.numPrimitives == 0 ? 0 : input.numVertices;
         vertices = Array<float>(3 * view.vertexCount * view.keyCount);
         indices = Array<std::uint32_t>(3 * std::size_t(view.primitiveCount));
-    } else {
+    } else if (inputType == OXRT_BUILD_INPUT_CUSTOM_PRIMITIVES) {
         view.primitiveType = OXRT_PRIMITIVE_CUSTOM;
         view.vertexCount = view.primitiveCount;
         vertices = Array<float>(6 * view.vertexCount * view.keyCount);
@@ -155,11 +185,15 @@ Geometry::Geometry(const OxrtBuildInput& input, std::uint32_t recordBase) : inpu
     view.indices = indices.data();
     const std::size_t floatsPerKey = vertices.size() / view.keyCount;
     for (std::uint32_t key = 0; key < view.keyCount; ++key) keys.push_back(vertices.data() + floatsPerKey * key);
+    if (shape) shape->describe(view);
     update(input);
 }
 
 OxrtBuildInput Geometry::asInput() const
 {
+    if (shape || view.opacityMicromaps)
+        fail(OXRT_ERROR_NOT_SUPPORTED, "%s cannot be compacted or relocated in this version; build them again",
+             shape ? "spheres and curves" : "triangles with opacity micromaps");
     OxrtBuildInput input = {};
     input.type = inputType;
     input.numSbtRecords = view.recordCount;
@@ -182,10 +216,15 @@ void Geometry::update(const OxrtBuildInput& input)
 {
     copyRecords(input);
     if (view.primitiveCount == 0) return;
-    if (inputType == OXRT_BUILD_INPUT_TRIANGLES)
+    if (shape) {
+        shape->copy(input);
+    } else if (inputType == OXRT_BUILD_INPUT_TRIANGLES) {
         copyTriangles(input);
-    else
+        micromaps.copy(input);
+        view.opacityMicromaps = micromaps.data();
+    } else {
         copyBoxes(input);
+    }
 }
 
 void Geometry::copyRecords(const OxrtBuildInput& input)
@@ -218,6 +257,7 @@ void Geometry::copyBoxes(const OxrtBuildInput& input)
 
 bool Geometry::anyHitPossible() const
 {
+    if (view.opacityMicromaps) return true; // the states of micromaps beat the flags
     return std::any_of(recordFlags.data(), recordFlags.data() + view.recordCount,
                        [](std::uint32_t flags) { return (flags & flagDisableAnyHit) == 0; });
 }
@@ -227,12 +267,45 @@ std::uint32_t Geometry::needs() const
     std::uint32_t result = view.primitiveType == OXRT_PRIMITIVE_CUSTOM ? OXRT_SCENE_HAS_CUSTOM : 0;
     for (std::uint32_t i = 0; i < view.recordCount; ++i)
         if (recordFlags[i] != 0) result |= OXRT_SCENE_HAS_GEOMETRY_FLAGS;
+    if (inputType == OXRT_BUILD_INPUT_SPHERES) result |= OXRT_SCENE_HAS_SPHERES;
+    if (inputType == OXRT_BUILD_INPUT_CURVES) result |= OXRT_SCENE_HAS_CURVES;
+    if (view.opacityMicromaps) result |= OXRT_SCENE_HAS_MICROMAPS;
     return result;
 }
 
 std::size_t Geometry::bytes() const
 {
-    return recordFlags.bytes() + recordOffsets.bytes() + vertices.bytes() + indices.bytes();
+    return recordFlags.bytes() + recordOffsets.bytes() + vertices.bytes() + indices.bytes() + (shape ? shape->bytes() : 0) + micromaps.bytes();
+}
+
+void Geometry::prepare(const EmbreeLibrary& embree, RTCGeometry geometry, const OxrtGeometry& target, bool updatable) const
+{
+    embree.rtcSetGeometryUserData(geometry, const_cast<OxrtGeometry*>(&target));
+    embree.rtcSetGeometryMask(geometry, ~0u); // Embree's default is 1
+    embree.rtcSetGeometryBuildQuality(geometry, updatable ? RTC_BUILD_QUALITY_REFIT : RTC_BUILD_QUALITY_MEDIUM);
+    embree.rtcSetGeometryEnableFilterFunctionFromArguments(geometry, anyHitPossible());
+}
+
+RTCGeometry Geometry::makeTriangles(const EmbreeLibrary& embree, RTCDevice device) const
+{
+    const RTCGeometry geometry = embree.rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
+    embree.rtcSetGeometryTimeStepCount(geometry, view.keyCount);
+    for (std::uint32_t key = 0; key < view.keyCount; ++key)
+        embree.rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, key, RTC_FORMAT_FLOAT3, vertices.data(),
+                                          3 * sizeof(float) * view.vertexCount * key, 3 * sizeof(float), view.vertexCount);
+    embree.rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, indices.data(), 0, 12, view.primitiveCount);
+    return geometry;
+}
+
+RTCGeometry Geometry::makeBoxes(const EmbreeLibrary& embree, RTCDevice device, OxrtGeometry& target) const
+{
+    const RTCGeometry geometry = embree.rtcNewGeometry(device, RTC_GEOMETRY_TYPE_USER);
+    embree.rtcSetGeometryTimeStepCount(geometry, view.keyCount);
+    embree.rtcSetGeometryUserPrimitiveCount(geometry, view.primitiveCount);
+    embree.rtcSetGeometryBoundsFunction(geometry, boxBounds, &target);
+    embree.rtcSetGeometryIntersectFunction(geometry, intersectNothing);
+    embree.rtcSetGeometryOccludedFunction(geometry, occludeNothing);
+    return geometry;
 }
 
 void Geometry::attach(const EmbreeLibrary& embree, RTCDevice device, RTCScene scene, unsigned geomID, OxrtGeometry& target,
@@ -240,26 +313,22 @@ void Geometry::attach(const EmbreeLibrary& embree, RTCDevice device, RTCScene sc
 {
     target = view;
     if (view.primitiveCount == 0) return; // the number stays reserved
-    const bool custom = view.primitiveType == OXRT_PRIMITIVE_CUSTOM;
-    const RTCGeometry geometry = embree.rtcNewGeometry(device, custom ? RTC_GEOMETRY_TYPE_USER : RTC_GEOMETRY_TYPE_TRIANGLE);
-    embree.rtcSetGeometryUserData(geometry, &target);
-    embree.rtcSetGeometryMask(geometry, ~0u); // Embree's default is 1
-    embree.rtcSetGeometryTimeStepCount(geometry, view.keyCount);
-    embree.rtcSetGeometryBuildQuality(geometry, updatable ? RTC_BUILD_QUALITY_REFIT : RTC_BUILD_QUALITY_MEDIUM);
-    embree.rtcSetGeometryEnableFilterFunctionFromArguments(geometry, anyHitPossible());
-    if (custom) {
-        embree.rtcSetGeometryUserPrimitiveCount(geometry, view.primitiveCount);
-        embree.rtcSetGeometryBoundsFunction(geometry, boxBounds, &target);
-        embree.rtcSetGeometryIntersectFunction(geometry, intersectNothing);
-        embree.rtcSetGeometryOccludedFunction(geometry, occludeNothing);
-    } else {
-        for (std::uint32_t key = 0; key < view.keyCount; ++key)
-            embree.rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, key, RTC_FORMAT_FLOAT3, vertices.data(),
-                                              3 * sizeof(float) * view.vertexCount * key, 3 * sizeof(float), view.vertexCount);
-        embree.rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, indices.data(), 0, 12, view.primitiveCount);
-    }
+    const RTCGeometry geometry = shape                                                 ? shape->make(embree, device, target)
+                                 : view.primitiveType == OXRT_PRIMITIVE_CUSTOM ? makeBoxes(embree, device, target)
+                                                                               : makeTriangles(embree, device);
+    prepare(embree, geometry, target, updatable);
     embree.rtcCommitGeometry(geometry);
     embree.rtcAttachGeometryByID(scene, geometry, geomID);
+    embree.rtcReleaseGeometry(geometry);
+}
+
+void Geometry::attachExtra(const EmbreeLibrary& embree, RTCDevice device, RTCScene scene, unsigned geomID, unsigned extraID,
+                           const OxrtGeometry& target, OxrtGeometry& extra, bool updatable) const
+{
+    const RTCGeometry geometry = shape->makeExtra(embree, device, geomID, target, extra);
+    prepare(embree, geometry, extra, updatable);
+    embree.rtcCommitGeometry(geometry);
+    embree.rtcAttachGeometryByID(scene, geometry, extraID);
     embree.rtcReleaseGeometry(geometry);
 }
 
@@ -268,11 +337,18 @@ void Geometry::refit(const EmbreeLibrary& embree, RTCScene scene, unsigned geomI
     if (view.primitiveCount == 0) return;
     const RTCGeometry geometry = embree.rtcGetGeometry(scene, geomID);
     embree.rtcSetGeometryEnableFilterFunctionFromArguments(geometry, anyHitPossible());
-    if (view.primitiveType == OXRT_PRIMITIVE_TRIANGLE) {
+    if (shape)
+        shape->refit(embree, geometry);
+    else if (view.primitiveType == OXRT_PRIMITIVE_TRIANGLE) {
         for (std::uint32_t key = 0; key < view.keyCount; ++key) embree.rtcUpdateGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, key);
         if (indicesChanged) embree.rtcUpdateGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0); // makes Embree build anew
     }
     embree.rtcCommitGeometry(geometry);
+}
+
+void Geometry::refitExtra(const EmbreeLibrary& embree, RTCScene scene, unsigned extraID) const
+{
+    embree.rtcCommitGeometry(embree.rtcGetGeometry(scene, extraID));
 }
 
 } // namespace oxrt

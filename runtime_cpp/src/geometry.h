@@ -5,8 +5,11 @@
 #include "embree_library.h"
 #include "oxrt/oxrt.h"
 #include "oxrt/pipeline.h"
+#include "opacity.h"
+#include "shape.h"
 
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 namespace oxrt {
@@ -21,10 +24,17 @@ public:
 
     // `target` is what kernels see; it becomes the user pointer of the Embree geometry and must outlive it.
     void attach(const EmbreeLibrary& embree, RTCDevice device, RTCScene scene, unsigned geomID, OxrtGeometry& target, bool updatable) const;
+    // A second Embree geometry for what the first cannot hold (the flat ends of curves); its number is no build input's.
+    bool hasExtra() const { return shape && shape->extraCount() != 0; }
+    void attachExtra(const EmbreeLibrary& embree, RTCDevice device, RTCScene scene, unsigned geomID, unsigned extraID,
+                     const OxrtGeometry& target, OxrtGeometry& extra, bool updatable) const;
 
     // Other coordinates, flags and offsets; the shape is that of the construction.
     void update(const OxrtBuildInput& input);
     void refit(const EmbreeLibrary& embree, RTCScene scene, unsigned geomID) const;
+    void refitExtra(const EmbreeLibrary& embree, RTCScene scene, unsigned extraID) const;
+
+    bool hasSameMicromaps(const OxrtBuildInput& input) const { return micromaps.isSame(input); }
 
     // What would build this geometry again; it points into this one.
     OxrtBuildInput asInput() const;
@@ -39,6 +49,9 @@ private:
     void copyTriangles(const OxrtBuildInput& input);
     void copyBoxes(const OxrtBuildInput& input);
     bool anyHitPossible() const;
+    void prepare(const EmbreeLibrary& embree, RTCGeometry geometry, const OxrtGeometry& target, bool updatable) const;
+    RTCGeometry makeTriangles(const EmbreeLibrary& embree, RTCDevice device) const;
+    RTCGeometry makeBoxes(const EmbreeLibrary& embree, RTCDevice device, OxrtGeometry& target) const;
 
     std::uint32_t inputType;
     OxrtGeometry view = {};
@@ -47,6 +60,8 @@ private:
     Array<float> vertices;
     std::vector<const float*> keys; // where the vertices or boxes of each motion key begin
     Array<std::uint32_t> indices;
+    std::unique_ptr<Shape> shape; // spheres and curves
+    Micromaps micromaps;
     bool indicesChanged = false; // by the last update
 };
 

@@ -3,6 +3,7 @@
 
 #include "accel.h"
 #include "context.h"
+#include "opacity.h"
 #include "pipeline.h"
 #include "transform.h"
 
@@ -23,6 +24,7 @@ struct Objects {
     Table<Context> contexts;
     Table<Accel> accels;
     Table<Transform> transforms;
+    Table<MicromapArray> micromapArrays;
     Table<Pipeline> pipelines;
     std::atomic<unsigned> forks{0};
 };
@@ -123,6 +125,11 @@ OxrtTransform publish(std::shared_ptr<Transform> transform)
     return asHandle<OxrtTransform>(insert(&Objects::transforms, std::move(transform)));
 }
 
+OxrtOpacityMicromapArray publish(std::shared_ptr<MicromapArray> array)
+{
+    return asHandle<OxrtOpacityMicromapArray>(insert(&Objects::micromapArrays, std::move(array)));
+}
+
 OxrtPipeline publish(std::shared_ptr<Pipeline> pipeline)
 {
     return asHandle<OxrtPipeline>(insert(&Objects::pipelines, std::move(pipeline)));
@@ -149,6 +156,13 @@ std::shared_ptr<Transform> find(OxrtTransform handle)
     return transform;
 }
 
+std::shared_ptr<MicromapArray> find(OxrtOpacityMicromapArray handle)
+{
+    auto array = lookUp(&Objects::micromapArrays, handle, OXRT_ERROR_INVALID_VALUE, "opacity micromap array");
+    array->context->checkProcess();
+    return array;
+}
+
 std::shared_ptr<Pipeline> find(OxrtPipeline handle)
 {
     auto pipeline = lookUp(&Objects::pipelines, handle, OXRT_ERROR_INVALID_VALUE, "pipeline");
@@ -168,6 +182,12 @@ std::shared_ptr<Transform> withdraw(OxrtTransform handle)
     return erase(&Objects::transforms, handle, OXRT_ERROR_INVALID_VALUE, "transform");
 }
 
+std::shared_ptr<MicromapArray> withdraw(OxrtOpacityMicromapArray handle)
+{
+    find(handle);
+    return erase(&Objects::micromapArrays, handle, OXRT_ERROR_INVALID_VALUE, "opacity micromap array");
+}
+
 std::shared_ptr<Pipeline> withdraw(OxrtPipeline handle)
 {
     find(handle);
@@ -182,6 +202,7 @@ ContextObjects withdraw(OxrtContext handle)
     const std::lock_guard lock(objects().mutex);
     withdrawn.accels = eraseOf(objects().accels, withdrawn.context.get());
     withdrawn.transforms = eraseOf(objects().transforms, withdrawn.context.get());
+    withdrawn.micromapArrays = eraseOf(objects().micromapArrays, withdrawn.context.get());
     withdrawn.pipelines = eraseOf(objects().pipelines, withdrawn.context.get());
     return withdrawn;
 }

@@ -13,7 +13,10 @@ from itertools import pairwise
 from typing import Any
 
 import brute_force
-from oracle_compare import close, decide, mismatches, ray_scale, same_sequence
+import brute_force_curves
+import oracle_curve_differences
+from oracle_compare import CURVE_T, close, decide, mismatches, ray_scale, same_sequence
+from oracle_curve_differences import SECOND_CROSSING, crosses_again, curve_difference
 from oracle_events import RayResult
 from oracle_files import Probe, number, numbers
 
@@ -25,6 +28,7 @@ COINCIDENT = "coincident hits"
 EDGE = "isolated edge"
 UNDEFINED = "undefined ray"
 BEYOND_BINARY32 = "lengths beyond binary32"
+FAR_SPHERE = "spheres smaller than rounding"
 
 REASONS = {
     ORDER: "any-hit and intersection programs run in traversal order, which OptiX leaves open; the multiset of calls is the same",
@@ -33,9 +37,10 @@ REASONS = {
     FIRST_ACCEPTED: "a terminated ray or a counting any-hit keeps the first accepted hit in traversal order, not the nearest",
     COINCIDENT: "which of several hits at one distance wins is left open",
     EDGE: "an isolated edge follows a top-left rule there, is closed in Embree",
+    FAR_SPHERE: "the ray begins so far away that its coordinates are rounded by more than the sphere's size",
     UNDEFINED: "NaN in the ray, or an infinite origin or direction, is undefined; here built-in primitives and boxes are missed",
     BEYOND_BINARY32: "the square of the direction's length leaves binary32: which primitives cope differs",
-}
+} | oracle_curve_differences.REASONS
 
 # Driver bugs and undefined behaviour that the oracle's README names; a probe that matches is compared by the text beside it.
 NOT_COPIED = {
@@ -56,6 +61,8 @@ SAME_PLACE = 1e-6
 # A number of calls that no counting any-hit program of the records waits for.
 UNCOUNTED = 0xffff
 SHORTEST, LONGEST = 1e-18, 1e18
+# The rounding of a coordinate, relative to it.
+BINARY32 = 2.0**-24
 # What depends on the order in which candidates were seen.
 ORDER_KEYS = frozenset({"p", "p1", "tmaxBefore", "tmaxAfter"})
 
@@ -79,6 +86,8 @@ class Known:
         """Whether this candidate was ever recorded for this ray, or is found by brute force."""
         if any(prim == event["prim"] and close(t, event["tmax"], 2e-5) for prim, t in self._hits.get(_place(probe, given), ())):
             return True
+        if brute_force_curves.is_on_curve(probe.scene, given, event):
+            return True
         found = brute_force.scene_candidates(probe.scene, given)
         return any(hit.primitive == event["prim"] and close(hit.t, event["tmax"], 1e-5, ray_scale(given)) for hit in found)
 
@@ -100,7 +109,7 @@ def compare(probe: Probe, index: int, result: RayResult, known: Known) -> tuple[
     strict = _strict(probe, events, recorded, given)
     if not strict and result.payload == recorded["p"] and (not trimmed or result.event_count == recorded["nev"]):
         return set(), []
-    if name := _exempt(probe, given):
+    if name := _exempt(probe, given) or curve_difference(probe, given, events, recorded["events"]):
         return {name}, []
     return _explain(probe, given, events, recorded["events"], known, strict)
 
@@ -113,7 +122,15 @@ def _exempt(probe: Probe, given: dict[str, Any]) -> str | None:
         return UNDEFINED
     if not SHORTEST < math.hypot(*direction) < LONGEST and any(direction):
         return BEYOND_BINARY32
+    if _is_far(probe, given):
+        return FAR_SPHERE
     return EDGE if brute_force.passes_edge(probe.scene, given) else None
+
+
+def _is_far(probe: Probe, given: dict[str, Any]) -> bool:
+    radii = [abs(number(radius)) for node in probe.scene for item in node.get("buildInputs", []) if item["type"] == "spheres"
+             for key in item["radii"] for radius in key]
+    return bool(radii) and max(abs(value) for value in numbers(given["o"])) * BINARY32 > min(radii)
 
 
 def _strict(probe: Probe, events: list[dict[str, Any]], recorded: dict[str, Any], given: dict[str, Any]) -> list[str]:
@@ -124,11 +141,13 @@ def _strict(probe: Probe, events: list[dict[str, Any]], recorded: dict[str, Any]
 
 
 def _garbage(probe: Probe, given: dict[str, Any]) -> frozenset[str]:
-    """Keys that a driver bug fills: optixGetTriangleVertexData extrapolates past the end of more than two keys; its form by handle and
-    the traversal clamp, as ours do."""
+    """Keys that a driver bug fills: optixGetTriangleVertexData extrapolates past the end of more than two keys, where its form by handle
+    and the traversal clamp, as ours do; and optixGetRibbonVertexData blends moving points with directions across the ribbon."""
     past = any(node["kind"] == "GAS" and node.get("motion", {}).get("numKeys", 0) > 2
                and number(given["time"]) > number(node["motion"]["timeEnd"]) for node in probe.scene)
-    return frozenset({"vertexData"} if past else ())
+    inputs = [item for node in probe.scene for item in node.get("buildInputs", [])]
+    ribbons = any(item.get("curveType") == "0x2505" and len(item["vertices"]) > 1 for item in inputs)
+    return frozenset({"vertexData"} if past or ribbons else ())
 
 
 def _brief(events: list[dict[str, Any]]) -> str:
@@ -143,6 +162,8 @@ def _explain(probe: Probe, given: dict[str, Any], ours: list[dict[str, Any]], th
     names = {ORDER} if not left_ours and not left_theirs else set()
     if names and sum(event["ev"] in ("AH", "IS") for event in ours) < 2:
         return set(), strict
+    names |= _drop(left_ours, left_theirs, SECOND_CROSSING,
+                   lambda event: crosses_again(event, ours) and _candidate(probe, given, event, known))
     names |= _drop_repeated(probe, left_ours, left_theirs, ours, theirs, scale)
     if _order_decides(probe, given, ours + theirs):
         names |= _drop(left_ours, left_theirs, FIRST_ACCEPTED, lambda event: _candidate(probe, given, event, known))
@@ -169,6 +190,12 @@ def _pair(ours: list[dict[str, Any]], theirs: list[dict[str, Any]], scale: float
     return left, missing
 
 
+def _same_place(probe: Probe) -> float:
+    """How much two computed distances of one crossing may differ."""
+    types = {item["type"] for node in probe.scene for item in node.get("buildInputs", [])}
+    return CURVE_T if "curves" in types else SAME_PLACE
+
+
 def _drop_repeated(probe: Probe, left_ours: list[dict[str, Any]], left_theirs: list[dict[str, Any]], ours: list[dict[str, Any]],
                    theirs: list[dict[str, Any]], scale: float) -> set[str]:
     flags = [flag for node in probe.scene for item in node.get("buildInputs", []) for flag in item["flags"]]
@@ -176,7 +203,7 @@ def _drop_repeated(probe: Probe, left_ours: list[dict[str, Any]], left_theirs: l
 
     def repeated(event: dict[str, Any], all_events: list[dict[str, Any]]) -> bool:
         same = [other for other in all_events if other["ev"] == event["ev"] == "AH" and other["rec"] == event["rec"]
-                and other["prim"] == event["prim"] and close(number(other["tmax"]), number(event["tmax"]), SAME_PLACE, scale)]
+                and other["prim"] == event["prim"] and close(number(other["tmax"]), number(event["tmax"]), _same_place(probe), scale)]
         return len(same) > 1
 
     before = len(left_ours) + len(left_theirs)

@@ -37,7 +37,7 @@ def handle_of(traversable: Any) -> int:
 def _traversable(context: ox.DeviceContext, node: dict[str, Any], made: Mapping[str, Any]) -> Any:
     match node["kind"]:
         case "GAS":
-            return context.accel_build([_build_input(item) for item in node["buildInputs"]], build_flags=node["buildFlags"],
+            return context.accel_build([_build_input(item, context) for item in node["buildInputs"]], build_flags=node["buildFlags"],
                                        motion_options=_motion(node))
         case "IAS":
             instances = [_instance(item, made) for item in node["instances"]]
@@ -72,10 +72,10 @@ def _instance(item: dict[str, Any], made: Mapping[str, Any]) -> ox.Instance:
                        visibility_mask=item["visibilityMask"], flags=item["flags"])
 
 
-def _build_input(item: dict[str, Any]) -> Any:
+def _build_input(item: dict[str, Any], context: ox.DeviceContext) -> Any:
     match item["type"]:
         case "triangles":
-            return ox.BuildInputTriangles(_vertices(item), _indices(item), **_records(item), **_triangle_extras(item))
+            return ox.BuildInputTriangles(_vertices(item), _indices(item), **_records(item), **_triangle_extras(item, context))
         case "custom":
             return ox.BuildInputCustomPrimitives(_keys(item["aabbs"], 6), **_records(item))
         case "spheres":
@@ -120,22 +120,22 @@ def _indices(item: dict[str, Any]) -> np.ndarray | None:
     return np.array(item["indices"], INDEX_TYPES[item.get("indexBytes", 4)]).reshape(-1, 3)
 
 
-def _triangle_extras(item: dict[str, Any]) -> dict[str, Any]:
+def _triangle_extras(item: dict[str, Any], context: ox.DeviceContext) -> dict[str, Any]:
     given: dict[str, Any] = {}
     if "preTransform" in item:
         given["pre_transform"] = _matrix(item["preTransform"])
     if "omm" in item:
-        given["opacity_micromap"] = _micromap(item["omm"], len(item["vertices"][0]) // 9)
+        given["opacity_micromap"] = _micromap(context, item["omm"], len(item["vertices"][0]) // 9)
     return given
 
 
-def _micromap(omm: dict[str, Any], triangles: int) -> Any:
+def _micromap(context: ox.DeviceContext, omm: dict[str, Any], triangles: int) -> Any:
     maps = [ox.OpacityMicromap(np.array(one["states"], np.uint8), one["level"], ox.OpacityMicromapFormat(one["format"]))
             for one in omm["maps"]]
     # an index list that was not recorded is the identity
     indices = omm["index"] or list(range(triangles))
     dtype = np.int16 if omm["indexSize"] == 2 else np.int32
-    return ox.BuildInputOpacityMicromap(maps, np.array(indices, dtype), index_offset=omm["indexOffset"])
+    return ox.BuildInputOpacityMicromap(context.opacity_micromap_array_build(maps), np.array(indices, dtype), omm["indexOffset"])
 
 
 def _curves(item: dict[str, Any]) -> Any:

@@ -34,13 +34,13 @@ EXPECT(RTC_FORMAT_FLOAT3 == 0x9003 && RTC_FORMAT_UINT3 == 0x5003 && RTC_FORMAT_F
 /* The host interface. */
 EXPECT(sizeof(OxrtInstance) == 72 && offsetof(OxrtInstance, traversable) == 64);
 EXPECT(sizeof(OxrtMotionOptions) == 12 && sizeof(OxrtAccelBuildOptions) == 16 && sizeof(OxrtTransformOptions) == 40);
-EXPECT(sizeof(OxrtBuildInput) == 88 && offsetof(OxrtBuildInput, vertices) == 32 && offsetof(OxrtBuildInput, instances) == 80);
+EXPECT(sizeof(OxrtBuildInput) == 128 && offsetof(OxrtBuildInput, vertices) == 32 && offsetof(OxrtBuildInput, instances) == 80);
 EXPECT(sizeof(OxrtContextOptions) == 40 && sizeof(OxrtAccelInfo) == 64 && sizeof(OxrtTextureOptions) == 40);
 EXPECT(sizeof(OxrtProgramGroupDesc) == 72 && sizeof(OxrtShaderBindingTable) == 64 && offsetof(OxrtShaderBindingTable, missStride) == 24);
 
 /* The interface of compiled pipelines. */
 EXPECT(sizeof(OxrtRecordHeader) == OXRT_SBT_RECORD_HEADER_SIZE && offsetof(OxrtRecordHeader, pipelineUid) == 12);
-EXPECT(sizeof(OxrtGeometry) == 72 && offsetof(OxrtGeometry, vertices) == 40 && offsetof(OxrtGeometry, opacityMicromap) == 64);
+EXPECT(sizeof(OxrtGeometry) == 104 && offsetof(OxrtGeometry, vertices) == 40 && offsetof(OxrtGeometry, opacityMicromaps) == 64);
 EXPECT(sizeof(OxrtInstanceView) == 128 && offsetof(OxrtInstanceView, handle) == 112);
 EXPECT(sizeof(OxrtTraversableView) == 96 && offsetof(OxrtTraversableView, handle) == 40);
 EXPECT(sizeof(OxrtTraversableSlot) == 16 && sizeof(OxrtTextureSlot) == 16 && sizeof(OxrtTextureView) == 40);

@@ -70,6 +70,7 @@ class Dispatch:
             ("checksStack", programs.checks_stack),
             ("overflowThrows", programs.checks_stack and programs.overflow_throws),
             ("usesTime", options.uses_motion_blur),
+            ("usesMicromaps", options.allow_opacity_micromaps),
             ("isValidated", options.validation),
         ]
         texts = [(name, "true") for name, is_on in constants if is_on]

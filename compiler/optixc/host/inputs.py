@@ -14,6 +14,8 @@ import numpy as np
 from optixc.enums_scene import GeometryFlags, InstanceFlags, MotionFlags
 from optixc.errors import InvalidValueError
 from optixc.host import library
+from optixc.host.opacity import pack_micromaps
+from optixc.host.vertex_formats import to_float3
 
 Keys = Any
 _KEY_LIMIT = 1 << 16
@@ -116,13 +118,15 @@ class BuildInput:
         return ()
 
 
-def _pointer(array: np.ndarray[Any, Any], c_type: str, kept: list[Any]) -> Any:
+def pointer_to(array: np.ndarray[Any, Any], c_type: str, kept: list[Any]) -> Any:
+    """A C pointer to the array, which goes to `kept`; NULL for an empty one."""
     kept.append(array)
     ffi = library.ffi()
     return ffi.cast(c_type, array.ctypes.data) if array.size else ffi.NULL
 
 
-def _keys(value: Keys, shape: tuple[int | str, ...], where: str) -> list[np.ndarray[Any, Any]]:
+def take_keys(value: Keys, shape: tuple[int | str, ...], where: str) -> list[np.ndarray[Any, Any]]:
+    """The arrays of the motion keys, all of one shape; one array is one key."""
     arrays = list(value) if isinstance(value, list | tuple) else [value]
     if not arrays:
         raise InvalidValueError(f"{where} is an empty list; motion needs one array per key")
@@ -132,14 +136,15 @@ def _keys(value: Keys, shape: tuple[int | str, ...], where: str) -> list[np.ndar
     return taken
 
 
-def _fill_keys(arrays: list[np.ndarray[Any, Any]], kept: list[Any]) -> Any:
-    pointers = library.ffi().new("float*[]", [_pointer(array, "float*", kept) for array in arrays])
+def fill_keys(arrays: list[np.ndarray[Any, Any]], kept: list[Any]) -> Any:
+    """A C array of pointers to the keys."""
+    pointers = library.ffi().new("float*[]", [pointer_to(array, "float*", kept) for array in arrays])
     kept.append(pointers)
     return pointers
 
 
 @dataclass(kw_only=True)
-class _Records:
+class Records:
     """SBT members shared by the geometry inputs: one flag word for all records or one each, and the record of each primitive."""
 
     flags: Any = GeometryFlags.NONE
@@ -158,33 +163,38 @@ class _Records:
         if not 0 <= int(self.primitive_index_offset) <= 0xFFFFFFFF - primitives:
             raise InvalidValueError(f"{where}: primitive_index_offset plus the number of primitives must stay below 2**32")
         target.numSbtRecords = count
-        target.flags = _pointer(words, "uint32_t*", kept)
+        target.flags = pointer_to(words, "uint32_t*", kept)
         target.primitiveIndexOffset = int(self.primitive_index_offset)
         if self.sbt_index_offsets is not None:
             offsets = take_index_array(self.sbt_index_offsets, ("n",), f"{where}.sbt_index_offsets")
             if offsets.size != primitives:
                 raise InvalidValueError(f"{where}: {offsets.size} sbt_index_offsets for {primitives} primitives")
             # an offset past the last record means the last record, as in OptiX: the runtime clamps
-            target.sbtIndexOffsets = _pointer(offsets, "uint32_t*", kept)
+            target.sbtIndexOffsets = pointer_to(offsets, "uint32_t*", kept)
 
 
 @dataclass
-class BuildInputTriangles(_Records, BuildInput):
+class BuildInputTriangles(Records, BuildInput):
     """Triangles: float32 vertices (n, 3), uint32 indices (m, 3) or None for vertices in threes; `pre_transform` 3x4 is baked in.
 
-    One or two vertices left over by the threes are not used.
+    Vertices may also be float16 or int16 (as signed normalised numbers) and (n, 2), which means z = 0; `vertex_format` then is what the
+    numpy type says, and may be given to be sure of it. Indices may be of 1, 2 or 4 bytes. `opacity_micromap` is a
+    BuildInputOpacityMicromap. One or two vertices left over by the threes are not used.
     """
 
     vertices: Keys
     indices: Any = None
     pre_transform: Any = field(default=None, kw_only=True)
     opacity_micromap: Any = field(default=None, kw_only=True)
+    vertex_format: Any = field(default=None, kw_only=True)
 
     def fill(self, target: Any, kept: list[Any]) -> None:
-        keys = _keys(self.vertices, ("n", 3), "BuildInputTriangles.vertices")
+        keys = take_keys(
+            to_float3(self.vertices, self.vertex_format, "BuildInputTriangles.vertices"), ("n", 3), "BuildInputTriangles.vertices"
+        )
         target.type = library.lib().OXRT_BUILD_INPUT_TRIANGLES
         target.numKeys = len(keys)
-        target.vertices = _fill_keys(keys, kept)
+        target.vertices = fill_keys(keys, kept)
         target.numVertices = len(keys[0])
         if self.indices is None:
             primitives = len(keys[0]) // 3
@@ -192,25 +202,27 @@ class BuildInputTriangles(_Records, BuildInput):
             indices = take_index_array(self.indices, ("m", 3), "BuildInputTriangles.indices")
             if indices.size and int(indices.max()) >= len(keys[0]):
                 raise InvalidValueError(f"BuildInputTriangles.indices holds {int(indices.max())}, though there are {len(keys[0])} vertices")
-            target.indices = _pointer(indices, "uint32_t*", kept)
+            target.indices = pointer_to(indices, "uint32_t*", kept)
             primitives = len(indices)
         target.numPrimitives = primitives
         if self.pre_transform is not None:
-            target.preTransform = _pointer(take_transform(self.pre_transform, "pre_transform"), "float*", kept)
+            target.preTransform = pointer_to(take_transform(self.pre_transform, "pre_transform"), "float*", kept)
+        if self.opacity_micromap is not None:
+            target.opacityMicromap = pack_micromaps(self.opacity_micromap, primitives, kept)
         self.fill_records(target, primitives, kept, "BuildInputTriangles")
 
 
 @dataclass
-class BuildInputCustomPrimitives(_Records, BuildInput):
+class BuildInputCustomPrimitives(Records, BuildInput):
     """Custom primitives by their boxes: float32 (n, 6), min x y z then max x y z."""
 
     aabbs: Keys
 
     def fill(self, target: Any, kept: list[Any]) -> None:
-        keys = _keys(self.aabbs, ("n", 6), "BuildInputCustomPrimitives.aabbs")
+        keys = take_keys(self.aabbs, ("n", 6), "BuildInputCustomPrimitives.aabbs")
         target.type = library.lib().OXRT_BUILD_INPUT_CUSTOM_PRIMITIVES
         target.numKeys = len(keys)
-        target.aabbs = _fill_keys(keys, kept)
+        target.aabbs = fill_keys(keys, kept)
         target.numPrimitives = len(keys[0])
         self.fill_records(target, len(keys[0]), kept, "BuildInputCustomPrimitives")
 
@@ -262,7 +274,7 @@ class BuildInputInstances(BuildInput):
         target.numSbtRecords = 1
         target.numKeys = 1
         target.numPrimitives = len(table)
-        target.instances = _pointer(table, "OxrtInstance*", kept)
+        target.instances = pointer_to(table, "OxrtInstance*", kept)
 
     def _fill_from_objects(self, table: np.ndarray[Any, Any]) -> None:
         if any(value is not None for value in (self.transforms, self.instance_ids, self.sbt_offsets, self.visibility_masks, self.flags)):

@@ -6,5 +6,6 @@
 #include <oxrt/device_memory.h>
 #include <oxrt/device_trace.h>
 #include <oxrt/device_handles.h>
+#include <oxrt/device_curves.h>
 
 #endif

@@ -7,7 +7,7 @@
 #ifndef OXRT_DEVICE_CANDIDATE_H
 #define OXRT_DEVICE_CANDIDATE_H
 
-#include <oxrt/device_ray.h>
+#include <oxrt/device_opacity.h>
 
 namespace oxrt {
 inline namespace OXRT_ISA {
@@ -26,6 +26,7 @@ struct NoPrograms {
     static constexpr bool checksStack = false;    /* nested traces may use up the stack */
     static constexpr bool overflowThrows = false; /* ... which is an exception rather than a fault */
     static constexpr bool usesTime = false;
+    static constexpr bool usesMicromaps = false;
     static constexpr bool isValidated = false;
 };
 
@@ -114,7 +115,10 @@ template <class Programs> OXRT_INLINE void runAnyHit(Ray& ray, const OxrtRecordH
 /* Decides about the candidate that was entered into the ray; runs the any-hit program if it is to run. */
 template <class Programs, bool MAY_CULL> OXRT_INLINE Verdict judge(Ray& ray) {
     const uint32_t instanceFlags = ray.instance ? ray.instance->flags : 0;
-    const uint32_t geometryFlags = ray.geometry->recordFlags[localRecord(ray)];
+    uint32_t geometryFlags = ray.geometry->recordFlags[localRecord(ray)];
+    if constexpr (Programs::usesMicromaps)
+        if (!passesMicromap(ray, instanceFlags, geometryFlags))
+            return Verdict::Ignore;
     const bool runsAnyHit = anyHitEnabled(ray, instanceFlags, geometryFlags);
     if constexpr (MAY_CULL)
         if (isCulled(ray, instanceFlags, geometryFlags, runsAnyHit))
@@ -135,6 +139,23 @@ OXRT_INLINE void stopTraversal(Ray& ray, RTCRay& embreeRay, float t) {
     embreeRay.tfar = -__builtin_inff();
 }
 
+/* Whether the candidate is a crossing of a curve that was offered before; it is noted if not. */
+OXRT_INLINE bool isRepeatedCurveHit(Ray& ray) {
+    CurveRoots& roots = ray.curveRoots;
+    if (ray.t >= roots.closest)
+        return true; /* of hits at one distance, as at joints of segments, the first counts */
+    if (roots.geometry != ray.geometry || roots.primitive != ray.primitive || roots.instance != ray.instance)
+        roots = {ray.geometry, ray.instance, ray.primitive, 0, {}, roots.closest};
+    /* Embree's roots of one crossing differ by its tolerance, two crossings by about the thickness of the curve. */
+    constexpr float sameRoot = 1e-4f;
+    for (uint32_t i = 0; i < roots.count; ++i)
+        if (__builtin_fabsf(roots.t[i] - ray.t) <= sameRoot * __builtin_fabsf(ray.t))
+            return true;
+    roots.t[roots.count & 3] = ray.t;
+    roots.count += roots.count < 4;
+    return false;
+}
+
 /* Embree's filter callback: called for every candidate on a built-in primitive. */
 template <class Programs, bool MAY_CULL> void filterCandidate(const RTCFilterFunctionNArguments* arguments) {
     Ray& ray = *reinterpret_cast<Ray*>(arguments->context);
@@ -143,8 +164,12 @@ template <class Programs, bool MAY_CULL> void filterCandidate(const RTCFilterFun
         return;
     enterHit(ray, *static_cast<const RTCHit*>(arguments->hit), embreeRay.tfar, arguments->geometryUserPtr);
     ray.objectRay = &embreeRay;
+    if ((ray.root->needs & OXRT_SCENE_HAS_CURVES) && isRepeatedCurveHit(ray)) {
+        arguments->valid[0] = 0;
+        return;
+    }
     switch (judge<Programs, MAY_CULL>(ray)) {
-    case Verdict::Accept: break;
+    case Verdict::Accept: ray.curveRoots.closest = ray.t; break;
     case Verdict::Ignore: arguments->valid[0] = 0; break;
     case Verdict::Terminate: stopTraversal(ray, embreeRay, ray.t); break;
     }

@@ -62,13 +62,34 @@ template <class Programs> OXRT_INLINE void runIntersection(Ray& ray, RTCRay& emb
                 stopTraversal(ray, embreeRay, ray.closest);
     }
 }
+/* What the runtime intersects by itself: curves and ribbons that Embree does not have. */
+template <class Arguments> OXRT_INLINE const OxrtOwnShape* ownShape(const Arguments& arguments) {
+    return static_cast<const OxrtGeometry*>(arguments.geometryUserPtr)->ownShape;
+}
+using OwnFilter = void (*)(const void*);
+OXRT_INLINE OwnFilter ownFilter(const RTCRayQueryContext* context) {
+    return reinterpret_cast<OwnFilter>(reinterpret_cast<const Ray*>(context)->filter);
+}
+/* For pipelines without intersection programs. */
+static inline void intersectOwn(const RTCIntersectFunctionNArguments* arguments) {
+    if (const OxrtOwnShape* own = ownShape(*arguments))
+        own->intersect(arguments, ownFilter(arguments->context));
+}
+static inline void occludeOwn(const RTCOccludedFunctionNArguments* arguments) {
+    if (const OxrtOwnShape* own = ownShape(*arguments))
+        own->occluded(arguments, ownFilter(arguments->context));
+}
 template <class Programs> void intersectCustom(const RTCIntersectFunctionNArguments* arguments) {
+    if (const OxrtOwnShape* own = ownShape(*arguments))
+        return own->intersect(arguments, ownFilter(arguments->context));
     auto& rayhit = *static_cast<RTCRayHit*>(arguments->rayhit);
     if (arguments->valid[0] == -1)
         runIntersection<Programs>(*reinterpret_cast<Ray*>(arguments->context), rayhit.ray, &rayhit.hit, arguments->geometryUserPtr,
                                   arguments->geomID, arguments->primID);
 }
 template <class Programs> void occludeCustom(const RTCOccludedFunctionNArguments* arguments) {
+    if (const OxrtOwnShape* own = ownShape(*arguments))
+        return own->occluded(arguments, ownFilter(arguments->context));
     auto& embreeRay = *static_cast<RTCRay*>(arguments->ray);
     if (arguments->valid[0] == -1)
         runIntersection<Programs>(*reinterpret_cast<Ray*>(arguments->context), embreeRay, nullptr, arguments->geometryUserPtr,

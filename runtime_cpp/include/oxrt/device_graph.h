@@ -162,9 +162,7 @@ template <class Programs, class Flags> __attribute__((noinline)) bool walkCloses
     walk.intersectInstances = walk.intersectPrimitives;
     walk.intersectInstances.filter = nullptr;
     walk.intersectInstances.intersect = intersectInstance<Programs>;
-    walk.intersectPrimitives.intersect = nullptr;
-    if constexpr (Programs::hasIntersection)
-        walk.intersectPrimitives.intersect = intersectCustom<Programs>;
+    walk.intersectPrimitives.intersect = intersectCallback<Programs>(ray);
     RTCRayHit found;
     setEmbreeRay(found.ray, ray);
     ray.closestInEmbree = found.ray.tfar;
@@ -186,9 +184,7 @@ template <class Programs, class Flags> __attribute__((noinline)) bool walkAny(Gr
     walk.occludeInstances = walk.occludePrimitives;
     walk.occludeInstances.filter = nullptr;
     walk.occludeInstances.occluded = occludeInstance<Programs>;
-    walk.occludePrimitives.occluded = nullptr;
-    if constexpr (Programs::hasIntersection)
-        walk.occludePrimitives.occluded = occludeCustom<Programs>;
+    walk.occludePrimitives.occluded = occludeCallback<Programs>(ray);
     RTCRay found;
     setEmbreeRay(found, ray);
     ray.closestInEmbree = found.tfar;

@@ -46,10 +46,13 @@ OXRT_INLINE void setEmbreeRay(RTCRay& target, const Ray& ray) {
 }
 
 /* Whether built-in primitives may need a decision under these ray flags. */
-template <class Programs> OXRT_INLINE bool mayFilter(uint32_t flags) {
+template <class Programs> OXRT_INLINE bool mayFilter(uint32_t flags, const OxrtTraversableView& root) {
     const bool runsAnyHit = Programs::hasAnyHit && ((flags & RAY_ENFORCE_ANYHIT) || !(flags & RAY_DISABLE_ANYHIT));
-    return runsAnyHit || (flags & RAY_CULL_ANY);
+    return runsAnyHit || (flags & RAY_CULL_ANY) || (Programs::usesMicromaps && (root.needs & OXRT_SCENE_HAS_MICROMAPS));
 }
+/* Whether that can be at all under flags of which this much is known. */
+template <class Programs, class Flags> inline constexpr bool mayHaveCandidates =
+    FlagTraits<Flags>::mayCull || Programs::usesMicromaps || (Programs::hasAnyHit && FlagTraits<Flags>::mayRunAnyHit);
 /* Whether that is so even on geometries that disable any-hit programs, where Embree does not call the filter unasked. */
 template <class Programs> OXRT_INLINE bool filtersEverything(uint32_t flags, const OxrtTraversableView& root) {
     const uint32_t overridingFlags = RAY_CULL_ANY | (Programs::hasAnyHit ? RAY_ENFORCE_ANYHIT : 0u);
@@ -68,16 +71,33 @@ template <class Programs, class Flags, class Arguments> OXRT_INLINE void setCall
     arguments.context = &ray.context;
     arguments.filter = nullptr;
     arguments.minWidth = 0.0f;
-    if constexpr (Known::mayCull || (Programs::hasAnyHit && Known::mayRunAnyHit)) {
-        if (mayFilter<Programs>(ray.flags))
+    if constexpr (mayHaveCandidates<Programs, Flags>) {
+        if (mayFilter<Programs>(ray.flags, *ray.root))
             arguments.filter = filterCandidate<Programs, Known::mayCull>;
         if (filtersEverything<Programs>(ray.flags, *ray.root))
             arguments.flags = RTC_RAY_QUERY_FLAG_INVOKE_ARGUMENT_FILTER;
     }
+    ray.filter = arguments.filter;
+    ray.curveRoots.geometry = nullptr;
+    ray.curveRoots.closest = __builtin_inff();
 }
 
-template <class Programs, class Flags> inline constexpr bool hasCallbacks =
-    Programs::hasIntersection || FlagTraits<Flags>::mayCull || (Programs::hasAnyHit && FlagTraits<Flags>::mayRunAnyHit);
+/* The callbacks for user geometry: intersection programs, and curves of the runtime's own whose hits are to be judged. Null: Embree calls
+   what the geometry brings. */
+template <class Programs> OXRT_INLINE RTCIntersectFunctionN intersectCallback(const Ray& ray) {
+    if constexpr (Programs::hasIntersection)
+        return intersectCustom<Programs>;
+    else
+        return ray.filter && (ray.root->needs & OXRT_SCENE_HAS_CURVES) ? intersectOwn : nullptr;
+}
+template <class Programs> OXRT_INLINE RTCOccludedFunctionN occludeCallback(const Ray& ray) {
+    if constexpr (Programs::hasIntersection)
+        return occludeCustom<Programs>;
+    else
+        return ray.filter && (ray.root->needs & OXRT_SCENE_HAS_CURVES) ? occludeOwn : nullptr;
+}
+
+template <class Programs, class Flags> inline constexpr bool hasCallbacks = Programs::hasIntersection || mayHaveCandidates<Programs, Flags>;
 
 }  // namespace OXRT_ISA
 }  // namespace oxrt

@@ -18,11 +18,13 @@ enum RayFlag : uint32_t {
     RAY_CULL_FRONT_FACING = 32,
     RAY_CULL_DISABLED_ANYHIT = 64,
     RAY_CULL_ENFORCED_ANYHIT = 128,
+    RAY_FORCE_MICROMAP_2_STATE = 1024,
     RAY_CULL_ANY = RAY_CULL_BACK_FACING | RAY_CULL_FRONT_FACING | RAY_CULL_DISABLED_ANYHIT | RAY_CULL_ENFORCED_ANYHIT
 };
 enum GeometryFlag : uint32_t { GEOMETRY_DISABLE_ANYHIT = 1, GEOMETRY_DISABLE_FACE_CULLING = 4 };
 enum InstanceFlag : uint32_t { INSTANCE_DISABLE_FACE_CULLING = 1, INSTANCE_FLIP_FACING = 2, INSTANCE_DISABLE_ANYHIT = 4,
-                               INSTANCE_ENFORCE_ANYHIT = 8 };
+                               INSTANCE_ENFORCE_ANYHIT = 8, INSTANCE_FORCE_MICROMAP_2_STATE = 16,
+                               INSTANCE_DISABLE_MICROMAPS = 32 };
 enum HitKind : uint32_t { HIT_KIND_TRIANGLE_FRONT_FACE = 0xFE, HIT_KIND_TRIANGLE_BACK_FACE = 0xFF };
 enum RecordSlot { SLOT_CLOSESTHIT = 0, SLOT_ANYHIT = 1, SLOT_INTERSECTION = 2 };
 
@@ -31,6 +33,16 @@ inline constexpr uint32_t NO_REPORT = ~0u;
 
 /* What became of a candidate. */
 enum class Verdict : uint32_t { Accept, Ignore, Terminate };
+
+/* Where the ray has met the curve segment that was offered last: Embree may offer one crossing again and again. */
+struct CurveRoots {
+    const OxrtGeometry* geometry;
+    const OxrtInstanceView* instance;
+    uint32_t primitive;
+    uint32_t count;
+    float t[4];
+    float closest; /* the nearest accepted hit of the whole query */
+};
 
 /* One trace: the ray as the caller gave it, and the hit that the running program is about (the candidate in any-hit programs, the
    closest accepted one in closest-hit programs). Traces without callbacks never give its address away, so that it stays in registers. */
@@ -58,6 +70,8 @@ struct Ray {
 
     /* while callbacks run */
     Verdict verdict;
+    CurveRoots curveRoots;
+    RTCFilterFunctionN filter; /* of the query, or null */
     bool isTerminated;
     float closest; /* t of the closest accepted hit, or the caller's tmax */
     float closestInEmbree; /* what stands for `closest` in Embree's ray */
@@ -218,6 +232,10 @@ OXRT_INLINE constexpr uint32_t builtinHitKind(uint32_t primitiveType) {
     case OXRT_PRIMITIVE_FLAT_QUADRATIC_BSPLINE: return 136;
     case OXRT_PRIMITIVE_SPHERE: return 138;
     case OXRT_PRIMITIVE_CUBIC_BEZIER: return 140;
+    case OXRT_PRIMITIVE_QUADRATIC_BSPLINE_ROCAPS: return 142;
+    case OXRT_PRIMITIVE_CUBIC_BSPLINE_ROCAPS: return 144;
+    case OXRT_PRIMITIVE_CATMULL_ROM_ROCAPS: return 146;
+    case OXRT_PRIMITIVE_CUBIC_BEZIER_ROCAPS: return 148;
     default: return 0;
     }
 }
@@ -238,7 +256,7 @@ OXRT_INLINE constexpr uint32_t getPrimitiveType(uint32_t kind) {
         return OXRT_PRIMITIVE_CUSTOM;
     if (kind >= HIT_KIND_TRIANGLE_FRONT_FACE)
         return OXRT_PRIMITIVE_TRIANGLE;
-    for (uint32_t type = OXRT_PRIMITIVE_QUADRATIC_BSPLINE; type <= OXRT_PRIMITIVE_CUBIC_BEZIER; ++type)
+    for (uint32_t type = OXRT_PRIMITIVE_QUADRATIC_BSPLINE; type <= OXRT_PRIMITIVE_CUBIC_BEZIER_ROCAPS; ++type)
         if (builtinHitKind(type) == (kind & ~1u))
             return type;
     return OXRT_PRIMITIVE_CUSTOM;
@@ -250,6 +268,7 @@ OXRT_INLINE uint32_t getPrimitiveType(const Ray& ray) {
 
 OXRT_INLINE float2 getTriangleBarycentrics(const Ray& ray) { return {ray.u, ray.v}; }
 OXRT_INLINE float getCurveParameter(const Ray& ray) { return ray.u; }
+OXRT_INLINE float2 getRibbonParameters(const Ray& ray) { return {ray.u, ray.v}; }
 
 OXRT_INLINE float3 vertexOf(const OxrtGeometry& geometry, uint32_t index) {
     const float* v = geometry.vertices + 3 * uint64_t(index);

@@ -23,11 +23,9 @@ template <class Programs, class Flags> OXRT_INLINE bool traverseAny(Ray& ray) {
     } else {
         RTCOccludedArguments arguments;
         setCallbacks<Programs, Flags>(arguments, ray);
-        arguments.occluded = nullptr;
-        if constexpr (Programs::hasIntersection) {
+        arguments.occluded = occludeCallback<Programs>(ray);
+        if constexpr (Programs::hasIntersection)
             ray.closestInEmbree = query.tfar;
-            arguments.occluded = occludeCustom<Programs>;
-        }
         services.occluded1(ray.root->scene, &query, &arguments);
         return ray.isTerminated || query.tfar < 0.0f;
     }
@@ -48,11 +46,10 @@ template <class Programs, class Flags> OXRT_INLINE bool traverseClosest(Ray& ray
     } else {
         RTCIntersectArguments arguments;
         setCallbacks<Programs, Flags>(arguments, ray);
-        arguments.intersect = nullptr;
+        arguments.intersect = intersectCallback<Programs>(ray);
         if constexpr (Programs::hasIntersection) {
             ray.closestInEmbree = query.ray.tfar;
             ray.committedKind = NO_REPORT;
-            arguments.intersect = intersectCustom<Programs>;
         }
         services.intersect1(ray.root->scene, &query, &arguments);
         if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID)

@@ -230,10 +230,14 @@ void runIntersections(const int* valid, RTCRayQueryContext* context, void* packe
         stopTraversals(ray, ran & ray.thread->thrown);
 }
 template <class Programs, int W> void intersectCustoms(const RTCIntersectFunctionNArguments* a) {
+    if (const OxrtOwnShape* own = ownShape(*a))
+        return own->intersect(a, nullptr); /* curves with filters are traced lane by lane */
     auto& rayhit = *static_cast<typename Packet<W>::RayHit*>(a->rayhit);
     runIntersections<Programs, W>(a->valid, a->context, &rayhit.ray, &rayhit.hit, a->geomID, a->primID);
 }
 template <class Programs, int W> void occludeCustoms(const RTCOccludedFunctionNArguments* a) {
+    if (const OxrtOwnShape* own = ownShape(*a))
+        return own->occluded(a, nullptr);
     runIntersections<Programs, W>(a->valid, a->context, a->ray, nullptr, a->geomID, a->primID);
 }
 

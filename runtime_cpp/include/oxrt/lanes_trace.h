@@ -103,8 +103,8 @@ __attribute__((noinline)) Lanes<bool, W> traverseCandidates(RayLanes<W>& ray, La
     const OxrtServices& services = *ray.thread->thread->launch->services;
     unsigned flags = isCoherent ? RTC_RAY_QUERY_FLAG_COHERENT : RTC_RAY_QUERY_FLAG_INCOHERENT;
     RTCFilterFunctionN filter = nullptr;
-    if constexpr (Known::mayCull || (Scalar::hasAnyHit && Known::mayRunAnyHit)) {
-        if (mayFilter<Scalar>(ray.flags))
+    if constexpr (mayHaveCandidates<Scalar, Flags>) {
+        if (mayFilter<Scalar>(ray.flags, *ray.root))
             filter = filterCandidates<Programs, Known::mayCull, W>;
         if (filtersEverything<Scalar>(ray.flags, *ray.root))
             flags |= RTC_RAY_QUERY_FLAG_INVOKE_ARGUMENT_FILTER;
@@ -226,13 +226,13 @@ OXRT_INLINE Lanes<bool, W> traverse(RayLanes<W>& ray, Lanes<bool, W> mask, typen
     if constexpr (!hasCallbacks<Scalar, Flags>)
         return traversePacket<Flags, ANY>(ray, mask, isCoherent);
     else {
-        constexpr bool filters = FlagTraits<Flags>::mayCull || (Scalar::hasAnyHit && FlagTraits<Flags>::mayRunAnyHit);
+        constexpr bool filters = mayHaveCandidates<Scalar, Flags>;
         const bool hasCustom = ray.root->needs & OXRT_SCENE_HAS_CUSTOM;
-        const bool mayCall = (Scalar::hasIntersection && hasCustom) || (filters && mayFilter<Scalar>(ray.flags));
+        const bool mayCall = (Scalar::hasIntersection && hasCustom) || (filters && mayFilter<Scalar>(ray.flags, *ray.root));
         if (!mayCall)
             return traversePacket<Flags, ANY>(ray, mask, isCoherent);
         if constexpr (filters)
-            if (!isCoherent && !hasCustom)
+            if ((!isCoherent && !hasCustom) || (ray.root->needs & OXRT_SCENE_HAS_CURVES) || Scalar::usesMicromaps)
                 return traverseLanes<Programs, Flags, ANY>(ray, mask, payload);
         return traverseCandidates<Programs, Flags, ANY>(ray, mask, &payload, isCoherent);
     }

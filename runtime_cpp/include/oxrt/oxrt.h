@@ -88,10 +88,12 @@ OXRT_API OxrtResult oxrtContextGetInfo(OxrtContext context, OxrtContextInfo* inf
 
 enum { OXRT_BUILD_FLAG_ALLOW_UPDATE = 1, OXRT_BUILD_FLAG_ALLOW_COMPACTION = 2, OXRT_BUILD_FLAG_PREFER_FAST_TRACE = 4,
        OXRT_BUILD_FLAG_PREFER_FAST_BUILD = 8, OXRT_BUILD_FLAG_ALLOW_RANDOM_VERTEX_ACCESS = 16,
-       OXRT_BUILD_FLAG_ALLOW_RANDOM_INSTANCE_ACCESS = 32,
+       OXRT_BUILD_FLAG_ALLOW_RANDOM_INSTANCE_ACCESS = 32, OXRT_BUILD_FLAG_ALLOW_OPACITY_MICROMAP_UPDATE = 64,
+       OXRT_BUILD_FLAG_ALLOW_DISABLE_OPACITY_MICROMAPS = 128,
        OXRT_BUILD_FLAG_NOT_ROBUST = 65536 /* ours: Embree's fast mode, which leaks at edges */ };
 
-enum { OXRT_BUILD_INPUT_TRIANGLES = 0x2141, OXRT_BUILD_INPUT_CUSTOM_PRIMITIVES = 0x2142, OXRT_BUILD_INPUT_INSTANCES = 0x2143 };
+enum { OXRT_BUILD_INPUT_TRIANGLES = 0x2141, OXRT_BUILD_INPUT_CUSTOM_PRIMITIVES = 0x2142, OXRT_BUILD_INPUT_INSTANCES = 0x2143,
+       OXRT_BUILD_INPUT_CURVES = 0x2145, OXRT_BUILD_INPUT_SPHERES = 0x2146 };
 
 typedef struct OxrtMotionOptions {
     uint16_t numKeys; /* 0 or 1: static */
@@ -108,6 +110,55 @@ typedef struct OxrtInstance {
     OxrtTraversableHandle traversable;
 } OxrtInstance;
 
+/* ---- opacity micromaps: how opaque the parts of a triangle are, so that any-hit programs run only where they must decide --------------- */
+
+enum { OXRT_OPACITY_MICROMAP_FORMAT_2_STATE = 1, OXRT_OPACITY_MICROMAP_FORMAT_4_STATE = 2, OXRT_OPACITY_MICROMAP_MAX_LEVEL = 12 };
+
+/* One micromap: 4^subdivisionLevel states of 1 or 2 bits from byteOffset on, index 0 in the lowest bits. */
+typedef struct OxrtOpacityMicromapDesc {
+    uint32_t byteOffset;
+    uint16_t subdivisionLevel;
+    uint16_t format;
+} OxrtOpacityMicromapDesc;
+
+/* How many micromaps have this level and format. In histograms of arrays and in usage counts of build inputs. */
+typedef struct OxrtOpacityMicromapCount {
+    uint32_t count;
+    uint32_t subdivisionLevel;
+    uint32_t format;
+} OxrtOpacityMicromapCount;
+
+typedef struct OxrtOpacityMicromapArrayOptions {
+    uint32_t flags;                            /* 1 PREFER_FAST_TRACE, 2 PREFER_FAST_BUILD: no difference here */
+    uint32_t numDescs;
+    const uint8_t* data;
+    size_t dataSize;
+    const OxrtOpacityMicromapDesc* descs;
+    const OxrtOpacityMicromapCount* histogram; /* must agree with the descriptors; rows of one level and format are added up */
+    uint32_t numHistogramEntries;
+} OxrtOpacityMicromapArrayOptions;
+
+typedef struct OxrtOpacityMicromapArrayImpl* OxrtOpacityMicromapArray;
+
+OXRT_API OxrtResult oxrtOpacityMicromapArrayBuild(OxrtContext context, const OxrtOpacityMicromapArrayOptions* options,
+                                                  OxrtOpacityMicromapArray* array);
+/* Accels that use the array keep it. */
+OXRT_API OxrtResult oxrtOpacityMicromapArrayDestroy(OxrtOpacityMicromapArray array);
+
+enum { OXRT_OPACITY_MICROMAP_INDEXING_LINEAR = 1, OXRT_OPACITY_MICROMAP_INDEXING_INDEXED = 2 };
+
+/* Which micromap of the array each triangle has. */
+typedef struct OxrtOpacityMicromapInput {
+    OxrtOpacityMicromapArray array;              /* NULL: all indices are predefined ones */
+    uint32_t indexingMode;                       /* linear: triangle i has micromap i + indexOffset */
+    uint32_t indexOffset;                        /* added to indices that are not negative */
+    const int32_t* indices;                      /* indexed: one per triangle; -1 transparent, -2 opaque, -3 and -4 unknown for all of it */
+    const OxrtOpacityMicromapCount* usageCounts; /* must agree with the indices; NULL: not checked */
+    uint32_t numUsageCounts;
+} OxrtOpacityMicromapInput;
+
+/* ---- build inputs --------------------------------------------------------------------------------------------------------------- */
+
 /* One build input; `type` says which members count. flags: numSbtRecords words, NULL = all 0.
    sbtIndexOffsets: one uint32 per primitive or NULL. */
 typedef struct OxrtBuildInput {
@@ -116,14 +167,20 @@ typedef struct OxrtBuildInput {
     const uint32_t* flags;
     const uint32_t* sbtIndexOffsets;
     uint32_t primitiveIndexOffset;
-    uint32_t numKeys;                   /* entries of `vertices`, `aabbs`; at least 1 */
-    const float* const* vertices;       /* triangles: one pointer per key to numVertices x 3 floats */
+    uint32_t numKeys;                   /* entries of `vertices`, `radii`, `normals`, `aabbs`; at least 1 */
+    const float* const* vertices;       /* triangles, spheres, curves: one pointer per key to numVertices x 3 floats */
     uint64_t numVertices;
-    const uint32_t* indices;            /* triangles: numPrimitives x 3, NULL: vertices in threes */
+    const uint32_t* indices;            /* triangles: numPrimitives x 3, NULL: vertices in threes; curves: first control points */
     const float* preTransform;          /* triangles: 3x4 row major or NULL */
     const float* const* aabbs;          /* custom primitives: one pointer per key to numPrimitives x 6 floats */
     uint64_t numPrimitives;
     const OxrtInstance* instances;      /* instances: numPrimitives */
+    const float* const* radii;          /* spheres, curves: one pointer per key to numVertices floats */
+    uint32_t singleRadius;              /* spheres: 1: one radius per key */
+    uint32_t curveType;                 /* curves: OXRT_PRIMITIVE_... of pipeline.h */
+    const float* const* normals;        /* ribbons: one pointer per key to numVertices x 3 floats; NULL: from the shape of the curve */
+    uint32_t endcapFlags;               /* curves: 1: flat discs at both ends of each strand */
+    const OxrtOpacityMicromapInput* opacityMicromap; /* triangles, or NULL */
 } OxrtBuildInput;
 
 typedef struct OxrtAccelBuildOptions {

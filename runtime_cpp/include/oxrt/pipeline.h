@@ -36,7 +36,26 @@ enum { OXRT_TRAVERSABLE_GAS = 0, OXRT_TRAVERSABLE_IAS = 1, OXRT_TRAVERSABLE_STAT
 
 enum { OXRT_PRIMITIVE_CUSTOM = 0x2500, OXRT_PRIMITIVE_QUADRATIC_BSPLINE = 0x2501, OXRT_PRIMITIVE_CUBIC_BSPLINE = 0x2502,
        OXRT_PRIMITIVE_LINEAR = 0x2503, OXRT_PRIMITIVE_CATMULL_ROM = 0x2504, OXRT_PRIMITIVE_FLAT_QUADRATIC_BSPLINE = 0x2505,
-       OXRT_PRIMITIVE_SPHERE = 0x2506, OXRT_PRIMITIVE_CUBIC_BEZIER = 0x2507, OXRT_PRIMITIVE_TRIANGLE = 0x2531 };
+       OXRT_PRIMITIVE_SPHERE = 0x2506, OXRT_PRIMITIVE_CUBIC_BEZIER = 0x2507, OXRT_PRIMITIVE_QUADRATIC_BSPLINE_ROCAPS = 0x2508,
+       OXRT_PRIMITIVE_CUBIC_BSPLINE_ROCAPS = 0x2509, OXRT_PRIMITIVE_CATMULL_ROM_ROCAPS = 0x250A,
+       OXRT_PRIMITIVE_CUBIC_BEZIER_ROCAPS = 0x250B, OXRT_PRIMITIVE_TRIANGLE = 0x2531 };
+
+/* The opacity of a triangle. states: 4^level of 1 bit, or of 2 bits if isFourState. NULL: `state` for the whole triangle. */
+typedef struct OxrtMicromapView {
+    const uint8_t* states;
+    uint8_t level;
+    uint8_t isFourState;
+    uint8_t state;
+} OxrtMicromapView;
+
+enum { OXRT_OPACITY_TRANSPARENT = 0, OXRT_OPACITY_OPAQUE = 1, OXRT_OPACITY_UNKNOWN_TRANSPARENT = 2, OXRT_OPACITY_UNKNOWN_OPAQUE = 3 };
+
+/* Primitives of Embree's user geometry that the runtime intersects by itself; called with the arguments of Embree's callback and the
+   RTCFilterFunctionN that judges the hits (it gets packets as wide as the callback's), or NULL. */
+typedef struct OxrtOwnShape {
+    void (*intersect)(const void* arguments, void (*filter)(const void* filterArguments));
+    void (*occluded)(const void* arguments, void (*filter)(const void* filterArguments));
+} OxrtOwnShape;
 
 /* One build input of a GAS; Embree's geomID is its index, and the geometry's user pointer (geometryUserPtr in callbacks) leads here. Arrays
    belong to the accel and are 16-byte padded at the end. Embree calls an argument filter for geometries of which some record allows any
@@ -53,7 +72,12 @@ typedef struct OxrtGeometry {
     const float* vertices;         /* floats apart: 3 triangles (xyz), 4 spheres and curves (xyzr), 6 custom primitives (boxes) */
     uint64_t vertexCount;          /* vertices (or boxes) per key; key k begins vertexCount * k further */
     const uint32_t* indices;       /* triangles: 3 per primitive, never NULL; curves: first control point; else NULL */
-    const void* opacityMicromap;   /* NULL without */
+    const OxrtMicromapView* opacityMicromaps; /* one per primitive; NULL without */
+    const OxrtOwnShape* ownShape;  /* not NULL: Embree's intersection callbacks hand over to it */
+    const float* widths;           /* ribbons: unit vectors across, at the beginning and at the end of each segment: 6 floats per primitive
+                                      and key */
+    uint32_t hasEndcaps;           /* curves */
+    const void* shape;             /* the runtime's own */
 } OxrtGeometry;
 
 /* One instance of an IAS; Embree's instID is its index. */

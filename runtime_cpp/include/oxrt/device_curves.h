@@ -1,0 +1,145 @@
+/* Spheres, curves and ribbons: their data at the ray's time, of the current hit and by handle. */
+#ifndef OXRT_DEVICE_CURVES_H
+#define OXRT_DEVICE_CURVES_H
+
+#include <oxrt/device_handles.h>
+
+namespace oxrt {
+inline namespace OXRT_ISA {
+
+/* The keys of a structure at a time; static ones have one. */
+OXRT_INLINE KeyPlace keyPosition(const OxrtTraversableView& gas, float time) { return gas.keyCount > 1 ? keyPlace(gas, time) : KeyPlace{0, 0.0f}; }
+OXRT_INLINE KeyPlace keyPosition(const Ray& ray) { return keyPosition(holderOf(ray), ray.time); }
+
+/* ---- of a primitive ------------------------------------------------------------------------------------------------------------- */
+
+/* A vertex with its radius, between the motion keys. */
+OXRT_INLINE float4 radiusVertex(const OxrtGeometry& geometry, uint32_t index, KeyPlace at) {
+    const float* v = geometry.vertices + 4 * (geometry.vertexCount * at.key + index);
+    if (at.fraction == 0.0f)
+        return {v[0], v[1], v[2], v[3]};
+    const float* w = v + 4 * geometry.vertexCount;
+    const float a = 1.0f - at.fraction;
+    const float b = at.fraction;
+    return {a * v[0] + b * w[0], a * v[1] + b * w[1], a * v[2] + b * w[2], a * v[3] + b * w[3]};
+}
+
+template <int N> struct ControlPoints;
+template <> struct ControlPoints<2> {
+    using Type = Tuple<float4, float4>;
+};
+template <> struct ControlPoints<3> {
+    using Type = Tuple<float4, float4, float4>;
+};
+template <> struct ControlPoints<4> {
+    using Type = Tuple<float4, float4, float4, float4>;
+};
+template <int N> OXRT_INLINE typename ControlPoints<N>::Type controlPoints(const OxrtGeometry& geometry, uint32_t primitive, KeyPlace at) {
+    const uint32_t first = geometry.indices[primitive];
+    const auto point = [&](uint32_t i) { return radiusVertex(geometry, first + i, at); };
+    if constexpr (N == 2)
+        return makeTuple(point(0), point(1));
+    else if constexpr (N == 3)
+        return makeTuple(point(0), point(1), point(2));
+    else
+        return makeTuple(point(0), point(1), point(2), point(3));
+}
+
+/* The direction across a ribbon at the borders of a segment. */
+OXRT_INLINE float3 ribbonWidth(const OxrtGeometry& geometry, uint32_t primitive, KeyPlace at, int border) {
+    const uint64_t perKey = 6 * uint64_t(geometry.primitiveCount);
+    const float* w = geometry.widths + perKey * at.key + 6 * uint64_t(primitive) + 3 * border;
+    if (at.fraction == 0.0f)
+        return {w[0], w[1], w[2]};
+    const float* x = w + perKey;
+    const float a = 1.0f - at.fraction;
+    const float b = at.fraction;
+    return {a * w[0] + b * x[0], a * w[1] + b * x[1], a * w[2] + b * x[2]};
+}
+
+/* The normal of the ruled surface axis(u) + v radius(u) across(u) / |across(u)|, not normalised: its derivatives' cross product, in which
+   the direction across has the length of the blend of its ends, as OptiX gives it. */
+OXRT_INLINE float3 ribbonNormal(const OxrtGeometry& geometry, uint32_t primitive, KeyPlace at, const float2& parameters) {
+    const float u = parameters.x;
+    const uint32_t first = geometry.indices[primitive];
+    const float4 p0 = radiusVertex(geometry, first, at);
+    const float4 p1 = radiusVertex(geometry, first + 1, at);
+    const float4 p2 = radiusVertex(geometry, first + 2, at);
+    const float3 begin = ribbonWidth(geometry, primitive, at, 0);
+    const float3 end = ribbonWidth(geometry, primitive, at, 1);
+    const float a = 1.0f - u;
+    const float radius = 0.5f * (a * a * p0.w + (1.0f + 2.0f * u * a) * p1.w + u * u * p2.w);
+    const float3 slope(a * (p1.x - p0.x) + u * (p2.x - p1.x), a * (p1.y - p0.y) + u * (p2.y - p1.y), a * (p1.z - p0.z) + u * (p2.z - p1.z));
+    const float3 across(a * begin.x + u * end.x, a * begin.y + u * end.y, a * begin.z + u * end.z);
+    const float3 change(end.x - begin.x, end.y - begin.y, end.z - begin.z);
+    const float squared = across.x * across.x + across.y * across.y + across.z * across.z;
+    const float inverse = squared > 0.0f ? 1.0f / __builtin_sqrtf(squared) : 0.0f;
+    const float along = (across.x * change.x + across.y * change.y + across.z * change.z) * inverse * inverse;
+    const float scale = parameters.y * radius * inverse;
+    const float3 tangent(slope.x + scale * (change.x - along * across.x), slope.y + scale * (change.y - along * across.y),
+                         slope.z + scale * (change.z - along * across.z));
+    return {tangent.y * across.z - tangent.z * across.y, tangent.z * across.x - tangent.x * across.z, tangent.x * across.y - tangent.y * across.x};
+}
+
+/* ---- of the hit ----------------------------------------------------------------------------------------------------------------- */
+
+OXRT_INLINE float4 getSphereData(const Ray& ray) {
+    return ray.geometry->primitiveType == OXRT_PRIMITIVE_SPHERE ? radiusVertex(*ray.geometry, ray.primitive, keyPosition(ray)) : float4{};
+}
+OXRT_INLINE float3 getRibbonNormal(const Ray& ray, const float2& parameters) {
+    return ray.geometry->widths ? ribbonNormal(*ray.geometry, ray.primitive, keyPosition(ray), parameters) : float3{};
+}
+
+/* ---- by handle: an index out of range means the nearest primitive, as in OptiX ------------------------------------------------------ */
+
+/* The primitive that a handle names; its geometry is null if there is none of the type. */
+struct NamedPrimitive {
+    const OxrtGeometry* geometry;
+    uint32_t primitive;
+    KeyPlace at;
+};
+OXRT_INLINE NamedPrimitive findPrimitive(const OxrtThread& thread, uint64_t gas, uint32_t primitive, uint32_t sbtGasIndex, float time, uint32_t type) {
+    const OxrtGeometry* geometry = findGeometry(thread, gas, sbtGasIndex);
+    if (!geometry || geometry->primitiveType != type || geometry->primitiveCount == 0)
+        return {nullptr, 0, {0, 0.0f}};
+    const uint32_t index = primitive < geometry->primitiveIndexOffset ? 0 : primitive - geometry->primitiveIndexOffset;
+    const uint32_t last = geometry->primitiveCount - 1;
+    return {geometry, index < last ? index : last, keyPosition(*findTraversable(*thread.launch, gas), time)};
+}
+OXRT_INLINE float4 getSphereDataFromHandle(const OxrtThread& thread, uint64_t gas, uint32_t primitive, uint32_t sbtGasIndex, float time) {
+    const NamedPrimitive named = findPrimitive(thread, gas, primitive, sbtGasIndex, time, OXRT_PRIMITIVE_SPHERE);
+    return named.geometry ? radiusVertex(*named.geometry, named.primitive, named.at) : float4{};
+}
+OXRT_INLINE float3 getRibbonNormalFromHandle(const OxrtThread& thread, uint64_t gas, uint32_t primitive, uint32_t sbtGasIndex, float time,
+                                             const float2& parameters) {
+    const NamedPrimitive named = findPrimitive(thread, gas, primitive, sbtGasIndex, time, OXRT_PRIMITIVE_FLAT_QUADRATIC_BSPLINE);
+    return named.geometry ? ribbonNormal(*named.geometry, named.primitive, named.at, parameters) : float3{};
+}
+
+/* The control points of one curve type; zeros where the primitive is of another one. */
+#define OXRT_CURVE_GETTER(name, type, count)                                                                                          \
+    OXRT_INLINE ControlPoints<count>::Type get##name(const Ray& ray) {                                                                \
+        return ray.geometry->primitiveType == OXRT_PRIMITIVE_##type ? controlPoints<count>(*ray.geometry, ray.primitive, keyPosition(ray)) \
+                                                                    : ControlPoints<count>::Type{};                                   \
+    }                                                                                                                                 \
+    OXRT_INLINE ControlPoints<count>::Type get##name##FromHandle(const OxrtThread& thread, uint64_t gas, uint32_t primitive,          \
+                                                                 uint32_t sbtGasIndex, float time) {                                  \
+        const NamedPrimitive named = findPrimitive(thread, gas, primitive, sbtGasIndex, time, OXRT_PRIMITIVE_##type);                 \
+        return named.geometry ? controlPoints<count>(*named.geometry, named.primitive, named.at) : ControlPoints<count>::Type{};      \
+    }
+OXRT_CURVE_GETTER(LinearCurveVertexData, LINEAR, 2)
+OXRT_CURVE_GETTER(QuadraticBSplineVertexData, QUADRATIC_BSPLINE, 3)
+OXRT_CURVE_GETTER(QuadraticBSplineRocapsVertexData, QUADRATIC_BSPLINE_ROCAPS, 3)
+OXRT_CURVE_GETTER(CubicBSplineVertexData, CUBIC_BSPLINE, 4)
+OXRT_CURVE_GETTER(CubicBSplineRocapsVertexData, CUBIC_BSPLINE_ROCAPS, 4)
+OXRT_CURVE_GETTER(CatmullRomVertexData, CATMULL_ROM, 4)
+OXRT_CURVE_GETTER(CatmullRomRocapsVertexData, CATMULL_ROM_ROCAPS, 4)
+OXRT_CURVE_GETTER(CubicBezierVertexData, CUBIC_BEZIER, 4)
+OXRT_CURVE_GETTER(CubicBezierRocapsVertexData, CUBIC_BEZIER_ROCAPS, 4)
+OXRT_CURVE_GETTER(RibbonVertexData, FLAT_QUADRATIC_BSPLINE, 3)
+#undef OXRT_CURVE_GETTER
+
+}  // namespace OXRT_ISA
+}  // namespace oxrt
+
+#endif

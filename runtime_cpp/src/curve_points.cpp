@@ -1,0 +1,122 @@
+// See curve_points.h.
+#include "curve_points.h"
+
+#include "error.h"
+
+#include <cmath>
+
+namespace oxrt {
+
+namespace {
+
+constexpr std::uint32_t endcapsOn = 1;
+
+void checkRadii(const OxrtBuildInput& input, unsigned number, bool isNegativeSkipped)
+{
+    for (std::uint32_t key = 0; key < std::max(1u, input.numKeys); ++key)
+        for (std::uint64_t i = 0; i < input.numVertices; ++i) {
+            const float radius = input.radii[key][i];
+            if (std::isnan(radius) || (radius < 0 && !isNegativeSkipped))
+                fail(OXRT_ERROR_INVALID_VALUE, "input %u: radii[%u][%llu] is %g; radii of curves are numbers from 0", number, key,
+                     static_cast<unsigned long long>(i), static_cast<double>(radius));
+        }
+}
+
+} // namespace
+
+void checkCurves(const OxrtBuildInput& input, unsigned number)
+{
+    CurveKind kind;
+    if (!findCurveKind(input.curveType, kind))
+        fail(OXRT_ERROR_INVALID_VALUE, "input %u: curveType 0x%x is no curve; give a PrimitiveType of curves", number, input.curveType);
+    if (input.numSbtRecords != 1) fail(OXRT_ERROR_INVALID_VALUE, "input %u: curves have one SBT record, not %u", number, input.numSbtRecords);
+    if (input.endcapFlags > endcapsOn)
+        fail(OXRT_ERROR_INVALID_VALUE, "input %u: endcapFlags is 0x%x; give CurveEndcapFlags.DEFAULT or ON", number, input.endcapFlags);
+    if (input.normals && !kind.isRibbon)
+        fail(OXRT_ERROR_INVALID_VALUE, "input %u: normals are for ribbons (FLAT_QUADRATIC_BSPLINE), not for curve type 0x%x", number,
+             input.curveType);
+    if (input.numPrimitives == 0) return;
+    checkKeys(input.vertices, input, number, "vertices");
+    checkKeys(input.radii, input, number, "radii");
+    if (input.normals) checkKeys(input.normals, input, number, "normals");
+    if (!input.indices)
+        fail(OXRT_ERROR_INVALID_VALUE, "input %u: indices is NULL; curves need the first control point of each segment", number);
+    for (std::uint64_t i = 0; i < input.numPrimitives; ++i)
+        if (input.indices[i] + std::uint64_t(kind.controlPoints) > input.numVertices)
+            fail(OXRT_ERROR_INVALID_VALUE, "input %u: segment %llu begins at vertex %u and has %u control points, but there are %llu vertices",
+                 number, static_cast<unsigned long long>(i), input.indices[i], kind.controlPoints,
+                 static_cast<unsigned long long>(input.numVertices));
+    checkRadii(input, number, kind.isRounded);
+}
+
+CurvePoints::CurvePoints(const OxrtBuildInput& input)
+    : type(input.curveType), kind(), segmentCount(static_cast<std::uint32_t>(input.numPrimitives)),
+      pointCount(input.numPrimitives == 0 ? 0 : input.numVertices), keyCount(std::max(1u, input.numKeys)), points(4 * pointCount * keyCount),
+      firsts(segmentCount)
+{
+    findCurveKind(type, kind);
+    copy(input);
+}
+
+void CurvePoints::copy(const OxrtBuildInput& input)
+{
+    for (std::uint32_t key = 0; key < keyCount; ++key)
+        for (std::uint64_t i = 0; i < pointCount; ++i) {
+            float* point = points.data() + 4 * (pointCount * key + i);
+            std::copy_n(input.vertices[key] + 3 * i, 3, point);
+            point[3] = input.radii[key][i];
+        }
+    std::copy_n(input.indices, segmentCount, firsts.data());
+}
+
+void CurvePoints::describe(OxrtGeometry& view) const
+{
+    view.primitiveType = type;
+    view.vertices = points.data();
+    view.vertexCount = pointCount;
+    view.indices = firsts.data();
+}
+
+bool CurvePoints::continues(std::uint32_t segment) const
+{
+    return segment > 0 && firsts[segment] == firsts[segment - 1] + kind.step;
+}
+
+std::vector<CurveEnd> CurvePoints::strandEnds() const
+{
+    std::vector<CurveEnd> ends;
+    for (std::uint32_t i = 0; i < segmentCount; ++i) {
+        if (!continues(i)) ends.push_back({i, 0});
+        if (i + 1 == segmentCount || !continues(i + 1)) ends.push_back({i, 1});
+    }
+    return ends;
+}
+
+Cubic segmentAt(const OxrtGeometry& view, std::uint32_t primitive, const KeyPosition& position)
+{
+    CurveKind kind;
+    findCurveKind(view.primitiveType, kind);
+    const auto* points = reinterpret_cast<const Point4*>(view.vertices) + view.vertexCount * position.key + view.indices[primitive];
+    if (position.fraction == 0) return cubicOf(kind.basis, points);
+    Point4 between[4];
+    const Point4* next = points + view.vertexCount;
+    for (unsigned i = 0; i < kind.controlPoints; ++i) between[i] = points[i] * (1 - position.fraction) + next[i] * position.fraction;
+    return cubicOf(kind.basis, between);
+}
+
+void segmentBounds(const OxrtGeometry& view, std::uint32_t primitive, std::uint32_t key, RTCBounds& bounds)
+{
+    const Bezier bezier = bezierOf(segmentAt(view, primitive, {key, 0}));
+    const Point4& first = bezier.p[0];
+    Point4 low = first;
+    Point4 high = first;
+    float radius = 0;
+    for (const Point4& p : bezier.p) {
+        low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z), 0};
+        high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z), 0};
+        radius = std::max(radius, std::fabs(p.w));
+    }
+    bounds = {low.x - radius, low.y - radius, low.z - radius, 0, high.x + radius, high.y + radius, high.z + radius, 0};
+}
+
+} // namespace oxrt

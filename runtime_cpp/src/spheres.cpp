@@ -1,0 +1,105 @@
+// Spheres: Embree's points of type sphere. OptiX offers only the hit where the ray enters; the sign of a radius does not count.
+#include "array.h"
+#include "error.h"
+#include "shape.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace oxrt {
+
+namespace {
+
+constexpr std::size_t floatsPerSphere = 4;
+
+class Spheres final : public Shape {
+public:
+    explicit Spheres(const OxrtBuildInput& input)
+        : count(input.numPrimitives), keyCount(std::max(1u, input.numKeys)), spheres(floatsPerSphere * count * keyCount)
+    {}
+
+    void copy(const OxrtBuildInput& input) override
+    {
+        for (std::uint32_t key = 0; key < keyCount; ++key)
+            for (std::uint64_t i = 0; i < count; ++i) {
+                float* sphere = spheres.data() + floatsPerSphere * (count * key + i);
+                std::copy_n(input.vertices[key] + 3 * i, 3, sphere);
+                const float radius = std::fabs(input.radii[key][input.singleRadius ? 0 : i]);
+                sphere[3] = std::isnan(radius) ? 0.0f : radius; // a hit on radius 0 has no front face, so it is dropped
+            }
+    }
+
+    void describe(OxrtGeometry& view) const override
+    {
+        view.primitiveType = OXRT_PRIMITIVE_SPHERE;
+        view.vertexCount = count;
+        view.vertices = spheres.data();
+    }
+
+    RTCGeometry make(const EmbreeLibrary& embree, RTCDevice device, OxrtGeometry&) override
+    {
+        const RTCGeometry geometry = embree.rtcNewGeometry(device, RTC_GEOMETRY_TYPE_SPHERE_POINT);
+        embree.rtcSetGeometryTimeStepCount(geometry, keyCount);
+        for (std::uint32_t key = 0; key < keyCount; ++key)
+            embree.rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, key, RTC_FORMAT_FLOAT4, spheres.data(),
+                                              sizeof(float) * floatsPerSphere * count * key, sizeof(float) * floatsPerSphere, count);
+        setFilter(embree, geometry, dropBackFaces);
+        return geometry;
+    }
+
+    void refit(const EmbreeLibrary& embree, RTCGeometry geometry) const override
+    {
+        for (std::uint32_t key = 0; key < keyCount; ++key) embree.rtcUpdateGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, key);
+    }
+
+    std::size_t bytes() const override { return spheres.bytes(); }
+
+private:
+    const std::uint64_t count;
+    const std::uint32_t keyCount;
+    Array<float> spheres;
+};
+
+// Where field `field` of lane `lane` stands in a packet of `width`; the fields follow each other as in RTCRay and RTCHit.
+float fieldOf(const void* packet, unsigned field, unsigned width, unsigned lane)
+{
+    return static_cast<const float*>(packet)[field * width + lane];
+}
+
+} // namespace
+
+void checkSpheres(const OxrtBuildInput& input, unsigned number)
+{
+    if (input.numPrimitives == 0) return;
+    if (input.numVertices != input.numPrimitives)
+        fail(OXRT_ERROR_INVALID_VALUE, "input %u: %llu spheres but %llu vertices; give one for each", number,
+             static_cast<unsigned long long>(input.numPrimitives), static_cast<unsigned long long>(input.numVertices));
+    checkKeys(input.vertices, input, number, "vertices");
+    checkKeys(input.radii, input, number, "radii");
+    if (input.singleRadius > 1) fail(OXRT_ERROR_INVALID_VALUE, "input %u: singleRadius is %u; give 0 or 1", number, input.singleRadius);
+}
+
+std::unique_ptr<Shape> makeSpheres(const OxrtBuildInput& input)
+{
+    return std::make_unique<Spheres>(input);
+}
+
+void dropBackFaces(const RTCFilterFunctionNArguments* arguments)
+{
+    enum { DIRECTION = 4, NORMAL = 0 };
+    for (unsigned lane = 0; lane < arguments->N; ++lane) {
+        if (arguments->valid[lane] != -1) continue;
+        float cosine = 0;
+        for (unsigned axis = 0; axis < 3; ++axis)
+            cosine += fieldOf(arguments->ray, DIRECTION + axis, arguments->N, lane) * fieldOf(arguments->hit, NORMAL + axis, arguments->N, lane);
+        if (!(cosine < 0)) arguments->valid[lane] = 0;
+    }
+}
+
+void setFilter(const EmbreeLibrary& embree, RTCGeometry geometry, RTCFilterFunctionN filter)
+{
+    embree.rtcSetGeometryIntersectFilterFunction(geometry, filter);
+    embree.rtcSetGeometryOccludedFilterFunction(geometry, filter);
+}
+
+} // namespace oxrt
