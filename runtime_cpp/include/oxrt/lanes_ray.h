@@ -144,7 +144,7 @@ template <class T, int W> OXRT_INLINE WordPlaces<W> placesIn(const T* array, Lan
 OXRT_INLINE const OxrtInstanceView* innermostInstance(const GraphPath& path) { return path.native ? path.native : path.instance; }
 
 /* f(path, lane) in every active lane of a scene with paths; zero elsewhere. */
-template <class T, class F, int W> __attribute__((noinline)) Lanes<T, W> mapPaths(const RayLanes<W>& ray, T otherwise, F f) {
+template <class T, class F, int W> __attribute__((noinline)) Lanes<T, W> mapPaths(RayLanes<W> ray, T otherwise, F f) {
     Lanes<T, W> result = otherwise;
     eachLane(ray.active, [&](int lane) { result.set(lane, f(ray.paths[lane], lane)); });
     return result;
@@ -183,8 +183,8 @@ template <class T, int W> OXRT_INLINE Lanes<T, W> instanceField(const RayLanes<W
 /* Addresses of the geometries that were hit. */
 template <int W> OXRT_INLINE AddressPlaces<W> geometryPlaces(const RayLanes<W>& ray) {
     if (ray.paths)
-        return {mapPaths(ray, uint64_t(0), [&](const GraphPath& path, int lane) {
-            return reinterpret_cast<uint64_t>(structureOf(path).geometries + ray.packet.hit.geomID[lane]);
+        return {mapPaths(ray, uint64_t(0), [&packet = ray.packet](const GraphPath& path, int lane) {
+            return reinterpret_cast<uint64_t>(structureOf(path).geometries + packet.hit.geomID[lane]);
         })};
     const Lanes<uint64_t, W> id = convert<uint64_t>(packetLanes<W>(ray.packet.hit.geomID));
     Lanes<uint64_t, W> geometries = reinterpret_cast<uint64_t>(ray.root->geometries);
@@ -227,8 +227,8 @@ template <int W> OXRT_INLINE Lanes<uint32_t, W> getInstanceId(const RayLanes<W>&
 }
 template <int W> OXRT_INLINE Lanes<uint32_t, W> getInstanceIndex(const RayLanes<W>& ray) {
     if (ray.paths)
-        return mapPaths(ray, 0u, [&](const GraphPath& path, int lane) {
-            return path.native ? ray.packet.hit.instID[0][lane] : path.instanceIndex;
+        return mapPaths(ray, 0u, [&packet = ray.packet](const GraphPath& path, int lane) {
+            return path.native ? packet.hit.instID[0][lane] : path.instanceIndex;
         });
     return select(inInstance(ray), packetLanes<W>(ray.packet.hit.instID[0]), 0u);
 }
@@ -260,8 +260,8 @@ template <int W> OXRT_INLINE void scalarHit(Ray& one, const RayLanes<W>& ray, in
     one.kind = ray.kind[lane];
 }
 
-/* f(scalar ray, lane) in every active lane; the results as lanes, zero elsewhere. */
-template <class F, int W> auto mapHits(const RayLanes<W>& ray, F f) {
+/* f(scalar ray, lane) in every active lane; the results as lanes, zero elsewhere. By value, so that the caller's ray stays in registers. */
+template <class F, int W> __attribute__((noinline)) auto mapHits(RayLanes<W> ray, F f) {
     Ray one;
     using R = decltype(f(static_cast<const Ray&>(one), 0));
     Wide<R, W> result = spread<W>(R{});

@@ -91,7 +91,7 @@ template <int W> OXRT_INLINE void openEmptyIntervals(CandidateLanes<W>& candidat
 
 /* The masked lanes as one packet whose candidates the programs judge; the lanes that hit something. */
 template <class Programs, class Flags, bool ANY, int W>
-__attribute__((noinline)) Lanes<bool, W> traverseCandidates(RayLanes<W>& ray, Lanes<bool, W> mask, void* payload, bool isCoherent) {
+OXRT_INLINE Lanes<bool, W> traverseCandidates(RayLanes<W>& ray, Lanes<bool, W> mask, void* payload, bool isCoherent) {
     using Scalar = typename Programs::Scalar;
     using Known = FlagTraits<Flags>;
     typename Packet<W>::RayHit worlds;
@@ -180,7 +180,7 @@ template <class Scalar, int W> OXRT_INLINE void enterScalarHit(RayLanes<W>& ray,
 
 /* The masked lanes one after the other, with the scalar programs as callbacks; the lanes that hit something. */
 template <class Programs, class Flags, bool ANY, int W>
-__attribute__((noinline)) Lanes<bool, W> traverseLanes(RayLanes<W>& ray, Lanes<bool, W> mask, typename Programs::Payload& payload) {
+Lanes<bool, W> traverseLanes(RayLanes<W>& ray, Lanes<bool, W> mask, typename Programs::Payload& payload) {
     using Scalar = typename Programs::Scalar;
     uint32_t hits = 0;
     eachLane(mask, [&](int lane) {
@@ -212,30 +212,72 @@ __attribute__((noinline)) Lanes<bool, W> traverseLanes(RayLanes<W>& ray, Lanes<b
 
 /* ---- trace -------------------------------------------------------------------------------------------------------------------- */
 
+/* What a traversal with programs of ours in it found. */
+template <class Payload, int W> struct FoundLanes {
+    Lanes<bool, W> hit;
+    Lanes<float, W> t;
+    Lanes<uint32_t, W> kind;
+    Lanes<uint32_t, W> attributes[8];
+    Payload payload;
+};
+
+/* Traversals that call back, or walk a graph. Ray and payload come and go by value: a caller whose own were seen from here could not keep
+   them in registers, not even where nothing calls back. */
+template <class Programs, class Flags, bool ANY, int W>
+__attribute__((noinline)) FoundLanes<typename Programs::Payload, W> traverseApart(RayLanes<W> ray, Lanes<bool, W> mask,
+                                                                                  typename Programs::Payload payload, bool isCoherent) {
+    using Scalar = typename Programs::Scalar;
+    constexpr bool filters = mayHaveCandidates<Scalar, Flags>;
+    const bool mayFilterHere = filters && mayFilter<Scalar>(ray.flags, *ray.root);
+    Lanes<bool, W> hit = false;
+    if (ray.paths) {
+        const uint32_t calling = OXRT_SCENE_HAS_SPHERES | OXRT_SCENE_HAS_CURVES | OXRT_SCENE_HAS_MICROMAPS |
+                                 (Scalar::hasIntersection ? uint32_t(OXRT_SCENE_HAS_CUSTOM) : 0u);
+        if (!isCoherent || (ray.root->needs & calling) || mayFilterHere)
+            hit = traverseLanes<Programs, Flags, ANY>(ray, mask, payload);
+        else
+            hit = traverseGraphPacket<Scalar, ANY>(ray, mask, isCoherent);
+    } else if constexpr (hasCallbacks<Scalar, Flags>) {
+        const bool oneByOne = (!isCoherent && !(ray.root->needs & OXRT_SCENE_HAS_CUSTOM)) || (ray.root->needs & OXRT_SCENE_HAS_CURVES) || Scalar::usesMicromaps;
+        if (filters && oneByOne)
+            hit = traverseLanes<Programs, Flags, ANY>(ray, mask, payload);
+        else
+            hit = traverseCandidates<Programs, Flags, ANY>(ray, mask, &payload, isCoherent);
+    }
+    FoundLanes<typename Programs::Payload, W> found;
+    found.hit = hit;
+    found.payload = payload;
+    if constexpr (!ANY)
+        found.t = ray.t;
+    if constexpr (!ANY && Scalar::hasIntersection) {
+        found.kind = ray.kind;
+        for (int i = 0; i < 8; ++i)
+            found.attributes[i] = ray.attributes[i];
+    }
+    return found;
+}
+
 template <class Programs, class Flags, bool ANY, int W>
 OXRT_INLINE Lanes<bool, W> traverse(RayLanes<W>& ray, Lanes<bool, W> mask, typename Programs::Payload& payload, bool isCoherent) {
     using Scalar = typename Programs::Scalar;
-    if (__builtin_expect(ray.paths != nullptr, 0)) {
-        constexpr bool mayFilterHere = FlagTraits<Flags>::mayCull || (Scalar::hasAnyHit && FlagTraits<Flags>::mayRunAnyHit);
-        const uint32_t calling = OXRT_SCENE_HAS_SPHERES | OXRT_SCENE_HAS_CURVES | OXRT_SCENE_HAS_MICROMAPS |
-                                 (Scalar::hasIntersection ? uint32_t(OXRT_SCENE_HAS_CUSTOM) : 0u);
-        if (!isCoherent || (ray.root->needs & calling) || (mayFilterHere && mayFilter<Scalar>(ray.flags)))
-            return traverseLanes<Programs, Flags, ANY>(ray, mask, payload);
-        return traverseGraphPacket<Scalar, ANY>(ray, mask, isCoherent);
-    }
-    if constexpr (!hasCallbacks<Scalar, Flags>)
-        return traversePacket<Flags, ANY>(ray, mask, isCoherent);
-    else {
+    bool isApart = ray.paths != nullptr;
+    if constexpr (hasCallbacks<Scalar, Flags>) {
         constexpr bool filters = mayHaveCandidates<Scalar, Flags>;
-        const bool hasCustom = ray.root->needs & OXRT_SCENE_HAS_CUSTOM;
-        const bool mayCall = (Scalar::hasIntersection && hasCustom) || (filters && mayFilter<Scalar>(ray.flags, *ray.root));
-        if (!mayCall)
-            return traversePacket<Flags, ANY>(ray, mask, isCoherent);
-        if constexpr (filters)
-            if ((!isCoherent && !hasCustom) || (ray.root->needs & OXRT_SCENE_HAS_CURVES) || Scalar::usesMicromaps)
-                return traverseLanes<Programs, Flags, ANY>(ray, mask, payload);
-        return traverseCandidates<Programs, Flags, ANY>(ray, mask, &payload, isCoherent);
+        isApart = isApart || (Scalar::hasIntersection && (ray.root->needs & OXRT_SCENE_HAS_CUSTOM)) || (filters && mayFilter<Scalar>(ray.flags, *ray.root));
     }
+    if (!__builtin_expect(isApart, hasCallbacks<Scalar, Flags>))
+        return traversePacket<Flags, ANY>(ray, mask, isCoherent);
+    const auto found = traverseApart<Programs, Flags, ANY>(ray, mask, payload, isCoherent);
+    if constexpr (Scalar::hasAnyHit || Scalar::hasIntersection)
+        payload = found.payload;
+    if constexpr (!ANY)
+        ray.t = found.t;
+    if constexpr (!ANY && Scalar::hasIntersection) {
+        ray.kind = found.kind;
+        for (int i = 0; i < 8; ++i)
+            ray.attributes[i] = found.attributes[i];
+    }
+    return found.hit;
 }
 
 template <class Programs, int W>
@@ -321,8 +363,8 @@ OXRT_INLINE void trace(LanesThread<W>& thread, Lanes<bool, W> mask, uint64_t han
     typename Packet<W>::RayHit rays;
     RayLanes<W> ray(rays);
     ray.thread = &thread;
-    ray.payload = &payload;
     if constexpr (Programs::usesPayloadWords) {
+        ray.payload = &payload;
         ray.readWord = readPayloadWord<typename Scalar::Payload, W>;
         ray.writeWord = writePayloadWord<typename Scalar::Payload, W>;
     }
