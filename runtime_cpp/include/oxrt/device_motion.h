@@ -158,7 +158,11 @@ OXRT_INLINE bool inverseAt(const OxrtTraversableView& node, float time, Affine& 
         __builtin_memcpy(inverse.m, node.instances->worldToObject, sizeof(inverse.m));
     else if (node.type == OXRT_TRAVERSABLE_STATIC)
         __builtin_memcpy(inverse.m, node.transformKeys + 12, sizeof(inverse.m));
-    else
+    else if (node.type == OXRT_TRAVERSABLE_MATRIX_MOTION) {
+        Affine matrix;
+        blendKeys<12>(node, time, matrix.m);
+        return inverted(matrix, inverse);
+    } else
         return inverted(matrixAt(node, time), inverse);
     return true;
 }
