@@ -15,26 +15,30 @@ import optixc as ox
 from benchmarks.handwritten import ROOT, compilers
 
 _CODE = """
-import json, sys, time
+import json, resource, sys, time
 sys.path.insert(0, sys.argv[1])
 import optixc as ox
 from benchmarks.compile_time import pipeline_of
 context = ox.DeviceContext(cache_dir=sys.argv[2])
 start = time.perf_counter()
 pipeline = pipeline_of(context, sys.argv[3], int(sys.argv[4]))
-print(json.dumps([time.perf_counter() - start, pipeline.report().compile_seconds]))
+seconds = time.perf_counter() - start
+children = resource.getrusage(resource.RUSAGE_CHILDREN)
+print(json.dumps([seconds, pipeline.report().compile_seconds, children.ru_utime + children.ru_stime]))
 """
 
 
 @dataclass
 class CompileTime:
-    """Seconds: all of `pipeline_create` and `module_create` cold, the C++ compiler's part of it, and the same from the cache."""
+    """Seconds: all of `pipeline_create` and `module_create` cold, the C++ compiler's part of it, that part's processor time (which
+    other work on the machine disturbs less), and the whole from the cache."""
 
     shader: str
     lanes: int
     compiler: str
     cold: float
     cxx: float
+    cxx_cpu: float
     cached: float
 
 
@@ -60,15 +64,14 @@ def pipeline_of(context: ox.DeviceContext, shader: str, lanes: int) -> ox.Pipeli
 def measure(shader: str, lanes: int, compiler: str, rounds: int = 5) -> CompileTime:
     """Medians of `rounds` cold compiles and of as many loads."""
     environment = os.environ | {"OPTIXC_CXX": compiler}
-    cold, cxx = [], []
+    samples = []
     for _ in range(rounds):
         with tempfile.TemporaryDirectory() as folder:
             command = [sys.executable, "-c", _CODE, str(ROOT), folder, shader, str(lanes)]
             answer = subprocess.run(command, capture_output=True, text=True, check=True, env=environment)
-            seconds, compile_seconds = json.loads(answer.stdout.splitlines()[-1])
-            cold.append(seconds)
-            cxx.append(compile_seconds)
-    return CompileTime(shader, lanes, compiler, statistics.median(cold), statistics.median(cxx), _cached(shader, lanes, compiler, rounds))
+            samples.append(json.loads(answer.stdout.splitlines()[-1]))
+    cold, cxx, cxx_cpu = (statistics.median(column) for column in zip(*samples, strict=True))
+    return CompileTime(shader, lanes, compiler, cold, cxx, cxx_cpu, _cached(shader, lanes, compiler, rounds))
 
 
 def _cached(shader: str, lanes: int, compiler: str, rounds: int) -> float:

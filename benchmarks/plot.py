@@ -8,15 +8,14 @@ from typing import Any
 
 from benchmarks.report import Results
 
-if importlib.util.find_spec("matplotlib") is not None:
+HAS_MATPLOTLIB = importlib.util.find_spec("matplotlib") is not None
+if HAS_MATPLOTLIB:
     from matplotlib.figure import Figure
-else:
-    Figure = None
 
 
 def draw(results: Results, path: Path) -> bool:
     """Bars of ours and the best packet kernel over the best scalar kernel, and the targets; False without matplotlib."""
-    if Figure is None:
+    if not HAS_MATPLOTLIB:
         return False
     threads = min(row.threads for row in results.rows)
     rows = [row for row in results.rows if row.threads == threads]
