@@ -16,7 +16,7 @@ import cffi
 import numpy as np
 from numpy.typing import NDArray
 
-from benchmarks.scenes import LIGHT_TRIANGLES, MATERIALS, SUN, Floats, Scene
+from benchmarks.scenes import MATERIALS, QUAD_TRIANGLES, SUN, Floats, Scene
 from benchmarks.workloads import Workload
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -124,7 +124,7 @@ class EmbreeScene:
         else:
             self._add_triangles(scene.vertices, scene.triangles)
         if with_light:
-            self._add_triangles(scene.light.vertices, LIGHT_TRIANGLES)
+            self._add_triangles(scene.light.vertices, QUAD_TRIANGLES)
         library.bench_scene_commit(self.handle, embree.threads == 1)
 
     def _add_triangles(self, vertices: Floats, triangles: NDArray[np.uint32]) -> None:

@@ -17,7 +17,7 @@ import numpy as np
 
 import optixc as ox
 from benchmarks.handwritten import floor_box, sphere_boxes
-from benchmarks.scenes import GLASS, LIGHT_TRIANGLES, MATERIALS, METAL, SUN, Floats, Scene
+from benchmarks.scenes import GLASS, MATERIALS, METAL, QUAD_TRIANGLES, SUN, Floats, Scene
 from benchmarks.workloads import Workload
 
 SHADERS = Path(__file__).resolve().parent / "shaders"
@@ -126,7 +126,7 @@ def _tracer(make: _Maker, scene: Scene, heavy: bool) -> Programs:
     params = {"light": lamp, "sky": _vec(scene.sky), "width": 1024, "offset": scene.offset, "noise_scale": scene.noise_scale}
     inputs = [
         ox.BuildInputTriangles(scene.vertices, scene.triangles, num_sbt_records=4, flags=[0] * 4, sbt_index_offsets=scene.material_of),
-        ox.BuildInputTriangles(light.vertices, LIGHT_TRIANGLES),
+        ox.BuildInputTriangles(light.vertices, QUAD_TRIANGLES),
     ]
     return Programs(make.group(raygen="path"), [make.group(miss="sky"), make.group(miss="visible")], hits, params, inputs)
 

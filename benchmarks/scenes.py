@@ -56,7 +56,7 @@ class Light:
         return np.array(corners, np.float32)
 
 
-LIGHT_TRIANGLES: Uints = np.array([[0, 1, 2], [0, 2, 3]], np.uint32)
+QUAD_TRIANGLES: Uints = np.array([[0, 1, 2], [0, 2, 3]], np.uint32)
 
 
 
@@ -145,7 +145,7 @@ def mesh_scene(name: str, camera: int = 0, with_normals: bool = True) -> Scene:
         name=name,
         camera=pinhole(**entry["cameras"][camera]),
         light=Light(
-            _vector(light["center"]) - edge_u / 2 - edge_v / 2, edge_u, edge_v, _unit(_vector(light["normal"])), _vector(light["radiance"])
+            _vector(_vector(light["center"]) - edge_u / 2 - edge_v / 2), edge_u, edge_v, _unit(_vector(light["normal"])), _vector(light["radiance"])
         ),
         sky=_vector((0.3, 0.4, 0.5)),
         offset=1e-5 * extent,
