@@ -2,11 +2,16 @@
 
 from __future__ import annotations
 
+import os
+
 import pytest
 from hypothesis import Phase, settings
 
-# Explaining a failure runs the test under a tracer, for many minutes where each example renders.
-settings.register_profile("optixc", phases=[phase for phase in Phase if phase is not Phase.explain])
+# Explaining a failure runs the test under a tracer, for many minutes where each example renders. In CI the examples are the same ones
+# each time, so that a red run means a change; people and `make fuzz` look for new ones.
+settings.register_profile(
+    "optixc", phases=[phase for phase in Phase if phase is not Phase.explain], derandomize="CI" in os.environ
+)
 settings.load_profile("optixc")
 
 
