@@ -145,7 +145,11 @@ def mesh_scene(name: str, camera: int = 0, with_normals: bool = True) -> Scene:
         name=name,
         camera=pinhole(**entry["cameras"][camera]),
         light=Light(
-            _vector(_vector(light["center"]) - edge_u / 2 - edge_v / 2), edge_u, edge_v, _unit(_vector(light["normal"])), _vector(light["radiance"])
+            corner=_vector(_vector(light["center"]) - edge_u / 2 - edge_v / 2),
+            edge_u=edge_u,
+            edge_v=edge_v,
+            n=_unit(_vector(light["normal"])),
+            radiance=_vector(light["radiance"]),
         ),
         sky=_vector((0.3, 0.4, 0.5)),
         offset=1e-5 * extent,
@@ -214,8 +218,8 @@ def leaf_scene(count: int = 30000) -> Scene:
     half = 0.03 * random.uniform(0.7, 1.3, (count, 1))
     u, v = axes[:, :, 0] * half, axes[:, :, 1] * half
     vertices = np.stack([centres - u - v, centres + u - v, centres + u + v, centres - u + v], 1).reshape(-1, 3)
-    quads = 4 * np.arange(count, dtype=np.uint32)[:, None]
-    triangles = np.stack([quads + np.uint32([0, 1, 2]), quads + np.uint32([0, 2, 3])], 1).reshape(-1, 3).astype(np.uint32)
+    quads: Uints = np.arange(0, 4 * count, 4, dtype=np.uint32).reshape(count, 1, 1)
+    triangles: Uints = np.add(quads, QUAD_TRIANGLES, dtype=np.uint32).reshape(-1, 3)
     return Scene(
         name="leaves",
         camera=pinhole((0.3, 0.2, 2.6), (-0.3, -0.2, -2.6), (0.0, 1.0, 0.0), 45.0),
