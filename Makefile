@@ -19,7 +19,7 @@ test: $(VENV)/ready-test
 	$(BIN)/ruff check .
 	MYPYPATH=compiler $(BIN)/mypy --strict -p optixc
 	PYTHON=$(BIN)/python CMAKE=$(abspath $(BIN))/cmake tests/runtime/run.sh plain address thread
-	$(BIN)/python -m pytest -q -n $(JOBS) --dist loadfile
+	$(BIN)/python -m pytest -q -n $(JOBS) --dist worksteal
 
 bench: $(VENV)/ready-bench
 	$(BIN)/python -m benchmarks
