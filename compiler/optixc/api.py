@@ -206,6 +206,7 @@ class DeviceContext(Context):
             built.programs,
             int(chosen.pipeline.exception_flags),
             chosen.pipeline.uses_motion_blur,
+            chosen.pipeline.allow_opacity_micromaps,
         )
 
     def accel_build(

@@ -79,6 +79,12 @@ HitObject& changeable(State state)
     OF1(Ray, transform_##name, transform##function, float3)                    \
     OF1(HitObject, hit_object_transform_##name, hitObjectTransform##function, float3)
 
+// The control points of the hit curve, of the outgoing hit object's, and of any curve by handle.
+#define OF_CURVE(name, function)                                                                                                   \
+    OF_HIT0(name##_vertex_data, function##VertexData)                                                                              \
+    OF4(OxrtThread, get_##name##_vertex_data_from_handle, get##function##VertexDataFromHandle, uint64_t, uint32_t, uint32_t, float) \
+    OF4(OxrtThread, get_##name##_vertex_data_of_geometry, get##function##VertexDataFromHandle, uint64_t, uint32_t, uint32_t, float)
+
 const std::unordered_map<std::string_view, OxrtDeviceFunction>& functions()
 {
     static const std::unordered_map<std::string_view, OxrtDeviceFunction> table = {
@@ -139,6 +145,27 @@ const std::unordered_map<std::string_view, OxrtDeviceFunction>& functions()
         OF_HIT0(triangle_barycentrics, TriangleBarycentrics)
         OF_HIT0(triangle_vertex_data, TriangleVertexData)
         OF_HIT0(curve_parameter, CurveParameter)
+        OF_CURVE(linear_curve, LinearCurve)
+        OF_CURVE(quadratic_bspline, QuadraticBSpline)
+        OF_CURVE(quadratic_bspline_rocaps, QuadraticBSplineRocaps)
+        OF_CURVE(cubic_bspline, CubicBSpline)
+        OF_CURVE(cubic_bspline_rocaps, CubicBSplineRocaps)
+        OF_CURVE(catmull_rom, CatmullRom)
+        OF_CURVE(catmull_rom_rocaps, CatmullRomRocaps)
+        OF_CURVE(cubic_bezier, CubicBezier)
+        OF_CURVE(cubic_bezier_rocaps, CubicBezierRocaps)
+        OF_CURVE(ribbon, Ribbon)
+        OF_HIT0(sphere_data, SphereData)
+        OF4(OxrtThread, get_sphere_data_from_handle, getSphereDataFromHandle, uint64_t, uint32_t, uint32_t, float)
+        OF4(OxrtThread, get_sphere_data_of_geometry, getSphereDataFromHandle, uint64_t, uint32_t, uint32_t, float)
+        OF_HIT0(ribbon_parameters, RibbonParameters)
+        OF1(Ray, get_ribbon_normal, getRibbonNormal, float2)
+        OF1(HitObject, hit_object_get_ribbon_normal, hitObjectGetRibbonNormal, float2)
+        {"get_ribbon_normal_from_handle",
+         [](State state, Arguments a, void* result) {
+             give(result, getRibbonNormalFromHandle(*static_cast<const OxrtThread*>(state), take<uint64_t>(a, 0), take<uint32_t>(a, 1),
+                                                    take<uint32_t>(a, 2), take<float>(a, 3), take<float2>(a, 4)));
+         }},
         OF_HIT0(transform_list_size, TransformListSize)
         OF_HIT0(object_to_world_transform_matrix, ObjectToWorldTransformMatrix)
         OF_HIT0(world_to_object_transform_matrix, WorldToObjectTransformMatrix)

@@ -8,7 +8,7 @@ namespace oxrt {
 
 namespace {
 
-template <bool USES_TIME>
+template <bool USES_TIME, bool USES_MICROMAPS>
 struct Interpreted : NoPrograms {
     struct Payload {
         uint32_t words[OXRT_PAYLOAD_WORDS];
@@ -19,6 +19,7 @@ struct Interpreted : NoPrograms {
     static constexpr bool hasMiss = true;
     static constexpr bool mayThrow = true;
     static constexpr bool usesTime = USES_TIME;
+    static constexpr bool usesMicromaps = USES_MICROMAPS;
 
     static void closestHit(Ray& ray, Payload&, const OxrtRecordHeader& record)
     {
@@ -44,8 +45,10 @@ float3 vectorOf(const float (&numbers)[3])
     return {numbers[0], numbers[1], numbers[2]};
 }
 
-using WithTime = Interpreted<true>;
-using WithoutTime = Interpreted<false>;
+using Static = Interpreted<false, false>;
+using Moving = Interpreted<true, false>;
+using StaticWithMicromaps = Interpreted<false, true>;
+using MovingWithMicromaps = Interpreted<true, true>;
 
 template <class Programs>
 typename Programs::Payload& payloadOf(uint32_t* words)
@@ -71,7 +74,10 @@ void traverseAs(InterpretedThread& owner, HitObject& object, const OxrtRayArgume
 
 void traceInterpreted(InterpretedThread& owner, const OxrtRayArguments& arguments, uint32_t* payload)
 {
-    owner.usesTime ? traceAs<WithTime>(owner, arguments, payload) : traceAs<WithoutTime>(owner, arguments, payload);
+    if (owner.usesMicromaps)
+        owner.usesTime ? traceAs<MovingWithMicromaps>(owner, arguments, payload) : traceAs<StaticWithMicromaps>(owner, arguments, payload);
+    else
+        owner.usesTime ? traceAs<Moving>(owner, arguments, payload) : traceAs<Static>(owner, arguments, payload);
 }
 
 void* newHitObject()
@@ -87,12 +93,16 @@ void freeHitObject(void* object)
 void traverseInterpreted(InterpretedThread& owner, void* object, const OxrtRayArguments& arguments, uint32_t* payload)
 {
     auto& outgoing = *static_cast<HitObject*>(object);
-    owner.usesTime ? traverseAs<WithTime>(owner, outgoing, arguments, payload) : traverseAs<WithoutTime>(owner, outgoing, arguments, payload);
+    if (owner.usesMicromaps)
+        owner.usesTime ? traverseAs<MovingWithMicromaps>(owner, outgoing, arguments, payload)
+                       : traverseAs<StaticWithMicromaps>(owner, outgoing, arguments, payload);
+    else
+        owner.usesTime ? traverseAs<Moving>(owner, outgoing, arguments, payload) : traverseAs<Static>(owner, outgoing, arguments, payload);
 }
 
 void invokeInterpreted(InterpretedThread& owner, void* object, uint32_t* payload)
 {
-    invoke<WithTime>(owner.thread, *static_cast<HitObject*>(object), payloadOf<WithTime>(payload));
+    invoke<Moving>(owner.thread, *static_cast<HitObject*>(object), payloadOf<Moving>(payload));
 }
 
 } // namespace oxrt
@@ -106,7 +116,7 @@ int oxrtInterpreterReport(void* ray, float t, uint32_t kind, const uint32_t* att
         uint32_t words[8];
     } held = {};
     for (unsigned i = 0; i < count && i < 8; ++i) held.words[i] = attributes[i];
-    const bool accepted = oxrt::reportIntersection<oxrt::WithTime>(found, t, kind, held);
+    const bool accepted = oxrt::reportIntersection<oxrt::Moving>(found, t, kind, held);
     return oxrt::hasEnded(found) ? 2 : accepted;
 }
 

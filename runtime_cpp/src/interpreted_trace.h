@@ -13,6 +13,7 @@ struct InterpretedThread {
     OxrtProgramCallback callback;
     void* data;
     bool usesTime;
+    bool usesMicromaps;
 };
 
 void traceInterpreted(InterpretedThread& owner, const OxrtRayArguments& arguments, uint32_t* payload);

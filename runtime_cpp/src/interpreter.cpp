@@ -27,8 +27,8 @@ struct OxrtInterpreterImpl {
 using namespace oxrt;
 
 OxrtResult oxrtInterpreterCreate(OxrtPipeline pipeline, const void* params, size_t paramsSize, const OxrtShaderBindingTable* sbt,
-                                 uint32_t width, uint32_t height, uint32_t depth, int usesMotion, OxrtProgramCallback callback, void* data,
-                                 OxrtInterpreter* interpreter)
+                                 uint32_t width, uint32_t height, uint32_t depth, int usesMotion, int usesMicromaps,
+                                 OxrtProgramCallback callback, void* data, OxrtInterpreter* interpreter)
 {
     return guard([&] {
         if (!interpreter) fail(OXRT_ERROR_INVALID_VALUE, "the result pointer `interpreter` is NULL");
@@ -43,6 +43,7 @@ OxrtResult oxrtInterpreterCreate(OxrtPipeline pipeline, const void* params, size
         made->owner.callback = callback;
         made->owner.data = data;
         made->owner.usesTime = usesMotion != 0;
+        made->owner.usesMicromaps = usesMicromaps != 0;
         made->ticket = made->pipeline->context->beginLaunch();
         *interpreter = made.release();
     });

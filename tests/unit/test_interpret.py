@@ -151,5 +151,5 @@ def test_getters_without_a_native_function_are_known() -> None:
     assert [name for name in missing if not any(part in name for part in NOT_YET)] == []
 
 
-NOT_YET = ("curve_vertex", "bspline", "catmull", "bezier", "ribbon", "sphere", "gas_pointer")
-"""Primitives whose getters device code does not have either."""
+NOT_YET = ("gas_pointer",)
+"""Getters that device code does not have either."""

@@ -74,10 +74,12 @@ class Pipeline:
         programs: Sequence[dict[str, Any]],
         exception_flags: int = 0,
         uses_motion: bool = False,
+        uses_micromaps: bool = False,
     ) -> None:
         self._pipeline: Any = None
         self.exception_flags = exception_flags
         self.uses_motion = uses_motion
+        self.uses_micromaps = uses_micromaps
         self._context = context
         self._groups = tuple(groups)
         self._params = params

@@ -45,7 +45,8 @@ def _run(
 ) -> None:
     ffi, lib = library.ffi(), library.lib()
     made = ffi.new("OxrtInterpreter*")
-    library.check(lib.oxrtInterpreterCreate(handle, data, data_size, table, *extent, machine.uses_motion, machine.callback, ffi.NULL, made))
+    scene = (machine.uses_motion, machine.uses_micromaps)
+    library.check(lib.oxrtInterpreterCreate(handle, data, data_size, table, *extent, *scene, machine.callback, ffi.NULL, made))
     try:
         lib.oxrtInterpreterSetIndex(made[0], *place)
         held = ctypes.create_string_buffer(bytes(ffi.buffer(data, data_size)) if data_size else b"\0")
@@ -64,7 +65,8 @@ def _machine(pipeline: Pipeline) -> Machine:
         params = params or checked.params
         instances[program.name] = next(one for one in checked.programs if one.name == program.name)
     numbers = {pipeline.program_number(name): instance for name, instance in instances.items()}
-    return Machine(numbers, params, pipeline.report().max_trace_depth, pipeline.exception_flags, pipeline.uses_motion)
+    depth = pipeline.report().max_trace_depth
+    return Machine(numbers, params, depth, pipeline.exception_flags, pipeline.uses_motion, pipeline.uses_micromaps)
 
 
 def _three(numbers: int | tuple[int, ...], what: str, missing: int = 1) -> tuple[int, ...]:

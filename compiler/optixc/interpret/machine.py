@@ -38,12 +38,14 @@ class Machine:
         max_trace_depth: int,
         exception_flags: int = 0,
         uses_motion: bool = False,
+        uses_micromaps: bool = False,
     ) -> None:
         self.params = values.zero(params) if params is not None else None
         self._programs = programs
         self._max_trace_depth = max_trace_depth
         self._flags = exception_flags
         self.uses_motion = int(uses_motion)
+        self.uses_micromaps = int(uses_micromaps)
         self._functions = Functions(self)
         self.helper = self._functions.helper
         self._frames: list[Frame] = []

@@ -6,6 +6,7 @@
 #ifndef OXRT_DEVICE_HIT_OBJECT_H
 #define OXRT_DEVICE_HIT_OBJECT_H
 
+#include <oxrt/device_curves.h>
 #include <oxrt/device_trace.h>
 
 namespace oxrt {
@@ -111,6 +112,18 @@ OXRT_OF_HIT(uint32_t, HitKind)
 OXRT_OF_HIT(float2, TriangleBarycentrics)
 OXRT_OF_HIT(float, CurveParameter)
 OXRT_OF_HIT(TriangleVertices, TriangleVertexData)
+OXRT_OF_HIT(float4, SphereData)
+OXRT_OF_HIT(float2, RibbonParameters)
+OXRT_OF_HIT(ControlPoints<2>::Type, LinearCurveVertexData)
+OXRT_OF_HIT(ControlPoints<3>::Type, QuadraticBSplineVertexData)
+OXRT_OF_HIT(ControlPoints<3>::Type, QuadraticBSplineRocapsVertexData)
+OXRT_OF_HIT(ControlPoints<4>::Type, CubicBSplineVertexData)
+OXRT_OF_HIT(ControlPoints<4>::Type, CubicBSplineRocapsVertexData)
+OXRT_OF_HIT(ControlPoints<4>::Type, CatmullRomVertexData)
+OXRT_OF_HIT(ControlPoints<4>::Type, CatmullRomRocapsVertexData)
+OXRT_OF_HIT(ControlPoints<4>::Type, CubicBezierVertexData)
+OXRT_OF_HIT(ControlPoints<4>::Type, CubicBezierRocapsVertexData)
+OXRT_OF_HIT(ControlPoints<3>::Type, RibbonVertexData)
 OXRT_OF_HIT(uint32_t, Attribute_0)
 OXRT_OF_HIT(uint32_t, Attribute_1)
 OXRT_OF_HIT(uint32_t, Attribute_2)
@@ -121,6 +134,9 @@ OXRT_OF_HIT(uint32_t, Attribute_6)
 OXRT_OF_HIT(uint32_t, Attribute_7)
 #undef OXRT_OF_HIT
 
+OXRT_INLINE float3 hitObjectGetRibbonNormal(const HitObject& object, const float2& parameters) {
+    return hitObjectIsHit(object) ? getRibbonNormal(object.ray, parameters) : float3{};
+}
 OXRT_INLINE uint32_t hitObjectGetSbtRecordIndex(const HitObject& object) { return hitObjectIsNop(object) ? 0 : object.recordIndex; }
 OXRT_INLINE constexpr uint32_t hitObjectGetClusterId(const HitObject&) { return ~0u; }
 OXRT_INLINE float3x4 hitObjectGetObjectToWorldTransformMatrix(const HitObject& object) {

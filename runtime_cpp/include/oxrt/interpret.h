@@ -28,11 +28,11 @@ typedef struct OxrtRayArguments {
 
 enum { OXRT_PAYLOAD_WORDS = 32 };
 
-/* `params` is copied; the records of `sbt` must live as long as the interpreter. `usesMotion` is 1 if the
-   pipeline was compiled for motion. */
+/* `params` is copied; the records of `sbt` must live as long as the interpreter. `usesMotion` and
+   `usesMicromaps` are 1 if the pipeline was compiled for them. */
 OXRT_API OxrtResult oxrtInterpreterCreate(OxrtPipeline pipeline, const void* params, size_t paramsSize, const OxrtShaderBindingTable* sbt,
-                                          uint32_t width, uint32_t height, uint32_t depth, int usesMotion, OxrtProgramCallback callback,
-                                          void* data, OxrtInterpreter* interpreter);
+                                          uint32_t width, uint32_t height, uint32_t depth, int usesMotion, int usesMicromaps,
+                                          OxrtProgramCallback callback, void* data, OxrtInterpreter* interpreter);
 OXRT_API void oxrtInterpreterDestroy(OxrtInterpreter interpreter);
 OXRT_API void oxrtInterpreterSetIndex(OxrtInterpreter interpreter, uint32_t x, uint32_t y, uint32_t z);
 /* The state that device functions of a thread take. */
