@@ -37,7 +37,7 @@ OxrtMotionOptions normalForm(const OxrtMotionOptions& motion)
     return motion.numKeys > 1 ? motion : OxrtMotionOptions{1, 0, 0.0f, 0.0f};
 }
 
-// Motion holds for all inputs of a GAS, so each of them gives every key.
+// Motion holds for all inputs of a GAS, so each of them gives every key. First of all, since the number of keys says how much is read.
 void checkKeys(const OxrtBuildInput& input, unsigned number, const OxrtMotionOptions& motion)
 {
     const unsigned keys = std::max(1u, input.numKeys);
@@ -63,8 +63,8 @@ void checkInputs(std::span<const OxrtBuildInput> inputs, const OxrtMotionOptions
         if (inputs[i].type == OXRT_BUILD_INPUT_CURVES && inputs[i].curveType != inputs[0].curveType)
             fail(OXRT_ERROR_INVALID_VALUE, "input %u has curve type 0x%x but input 0 has 0x%x; make one accel per type and instance them", i,
                  inputs[i].curveType, inputs[0].curveType);
-        Geometry::check(inputs[i], i);
         checkKeys(inputs[i], i, motion);
+        Geometry::check(inputs[i], i);
         primitives += inputs[i].numPrimitives;
         records += inputs[i].numSbtRecords;
     }
