@@ -1,4 +1,5 @@
-# make demo: renders two scenes; make test: all checks; make bench: measurements; make fuzz: the long run of the program generator.
+# make demo: renders two scenes; make test: all checks; make bench: measurements; make fuzz: the long run of the program generator;
+# make sanitize: the runtime's tests under sanitizers.
 # Each works alone in a clean clone: it makes .venv, builds the runtime and installs the project there, editable.
 
 VENV := .venv
@@ -9,7 +10,7 @@ PIP := $(BIN)/python -m pip --disable-pip-version-check --quiet
 NATIVE := CMakeLists.txt pyproject.toml compiler/optixc/version.py $(shell find runtime_cpp -type f)
 INSTALL := $(PIP) install --no-build-isolation --editable
 
-.PHONY: demo test bench fuzz clean
+.PHONY: demo test sanitize bench fuzz clean
 .DELETE_ON_ERROR:
 
 demo: $(VENV)/ready-examples
@@ -18,11 +19,15 @@ demo: $(VENV)/ready-examples
 test: $(VENV)/ready-test
 	$(BIN)/ruff check .
 	MYPYPATH=compiler $(BIN)/mypy --strict -p optixc
-	PYTHON=$(BIN)/python CMAKE=$(abspath $(BIN))/cmake tests/runtime/run.sh plain address thread
+	PYTHON=$(BIN)/python CMAKE=$(abspath $(BIN))/cmake tests/runtime/run.sh plain
 	$(BIN)/python -m pytest -q -n $(JOBS) --dist worksteal
 
 bench: $(VENV)/ready-bench
 	$(BIN)/python -m benchmarks
+
+# The runtime's C++ tests again, under AddressSanitizer with UBSan and under ThreadSanitizer.
+sanitize: $(VENV)/ready-test
+	PYTHON=$(BIN)/python CMAKE=$(abspath $(BIN))/cmake tests/runtime/run.sh address thread
 
 fuzz: $(VENV)/ready-test
 	$(BIN)/python -m pytest tests/property --fuzz
