@@ -31,10 +31,8 @@ from optixc.ir.nodes import (
 )
 from optixc.ir.types import Scalar
 from optixc.ir.walk import called_helpers, expressions, statements
-from optixc.passes.uniformity import Clone, UniformityAnalysis
+from optixc.passes.uniformity import Clone, Key, UniformityAnalysis
 from optixc.passes.uses import stored_local
-
-Key = tuple[str, tuple[bool, ...]]
 
 
 class Clones:
@@ -51,14 +49,15 @@ class Clones:
         self.scalar: dict[str, Function] = {}
         """Helpers that are needed as scalar functions."""
 
-    def helper(self, name: str, arguments: tuple[bool, ...]) -> Clone:
-        return self.analysis.helper(name, arguments)
+    def helper(self, name: str, arguments: tuple[bool, ...], caller: Clone) -> Clone:
+        """The clone that a caller reaches with arguments that vary or not."""
+        return self.analysis.helper(name, arguments, caller.in_intersection)
 
     def callees(self, clone: Clone) -> list[Clone]:
         """The clones that a clone calls over lanes, in order; those that run once are noted in `scalar`."""
         found: dict[Key, Clone] = {}
         for function, arguments in self._calls(clone):
-            callee = self.helper(function, arguments)
+            callee = self.helper(function, arguments, clone)
             if self.runs_once(callee):
                 self._need_scalar(callee.function)
             else:

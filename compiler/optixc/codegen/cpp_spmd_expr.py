@@ -31,7 +31,7 @@ from optixc.ir.nodes import (
 )
 from optixc.ir.types import Scalar, ScalarKind, Struct, Tuple, Type, Vector, scalar_of
 from optixc.ir.walk import subexpressions
-from optixc.passes.uniformity import Clone, varies
+from optixc.passes.uniformity import COMMON_IN_INTERSECTION, Clone, varies
 
 _THREAD_LANES = frozenset({"get_launch_index", "get_launch_dimensions"})
 _PER_LANE = frozenset({"transpose", "determinant", "inverse", "mul_hi"})
@@ -137,6 +137,8 @@ class LaneDialect:
         row = INTRINSICS[node.name]
         if node.name.startswith(PAYLOAD_GETTER):
             return Code(f"oxrt::payloadWord({self._names.trace}, {node.name.removeprefix(PAYLOAD_GETTER)})")
+        if self._clone.in_intersection and node.name in COMMON_IN_INTERSECTION and not self.varies(node):
+            return Code(f"{row.cpp}({', '.join([f'oxrt::commonHit({self._names.trace})', *arguments])})")
         if not self.varies(node) and row.state is State.THREAD and node.name not in _THREAD_LANES:
             return Code(f"{row.cpp}({', '.join([f'*{self._names.thread}.thread', *arguments])})")
         if row.state is State.NONE and not (node.name in _PER_LANE and self.varies(node)):
@@ -157,7 +159,7 @@ class LaneDialect:
 
     def callee(self, function: str, nodes: tuple[Expr, ...]) -> Clone:
         """The clone of a helper that fits the arguments."""
-        return self._clones.helper(function, tuple(self.varies(argument) for argument in nodes))
+        return self._clones.helper(function, tuple(self.varies(argument) for argument in nodes), self._clone)
 
     def helper_call(self, function: str, nodes: tuple[Expr, ...], arguments: tuple[str, ...]) -> str:
         """The call of the clone of a helper that fits the arguments."""

@@ -13,7 +13,7 @@ from optixc.codegen.cpp_dispatch import FUNCTIONS, SLOTS
 from optixc.codegen.cpp_pipeline import PipelineFile, callees_first, structs_of
 from optixc.codegen.cpp_scalar import ScalarFunction
 from optixc.codegen.cpp_spmd import LaneFunction
-from optixc.codegen.cpp_spmd_clones import Clones, Key
+from optixc.codegen.cpp_spmd_clones import Clones
 from optixc.codegen.cpp_spmd_expr import PAYLOAD_GETTER, PAYLOAD_SETTER
 from optixc.codegen.cpp_spmd_types import WideTypes
 from optixc.codegen.needs import EXCEPTION_FLAG_STACK_OVERFLOW, options_of
@@ -26,7 +26,7 @@ from optixc.ir.types import Struct, Void
 from optixc.ir.walk import expressions, statements
 from optixc.passes.callables import CallableSignature, callables_with, signatures_called
 from optixc.passes.features import Features
-from optixc.passes.uniformity import Clone
+from optixc.passes.uniformity import Clone, Key
 
 _ALSO_SCALAR = (ProgramKind.ANYHIT, ProgramKind.INTERSECTION)
 
@@ -139,29 +139,50 @@ class SpmdFile(PipelineFile):
             if any(_uses_payload_words(self._pipeline, program) for _, functions in _present(programs) for program in functions):
                 self._writer.line("static constexpr bool usesPayloadWords = true;")
             for kind, _ in _present(programs):
-                self._writer.line(f"static void {FUNCTIONS[kind]}(Rays& trace, Mask mask, Payload& payload);")
+                record = ", const OxrtRecordHeader& record" if kind is ProgramKind.INTERSECTION else ""
+                self._writer.line(f"static void {FUNCTIONS[kind]}(Rays& trace, Mask mask, Payload& payload{record});")
         self._writer.line()
 
     def _define_lane_class(self, programs: ProgramClass) -> None:
         owner = f"{self._signatures.program_class(programs.payload)}Lanes"
         for kind, functions in _present(programs):
-            calls = [(function, self._lane_call(function, programs.payload, owner)) for function in functions]
+            mask = "mask" if kind is ProgramKind.INTERSECTION else "own"
+            calls = [(function, self._lane_call(function, programs.payload, owner, mask)) for function in functions]
             payload = "Payload& payload" if any("payload" in call for _, call in calls) else "Payload&"
-            with self._writer.block(f"void {owner}::{FUNCTIONS[kind]}(Rays& trace, Mask mask, {payload})"):
-                self._writer.line(f"const Wide<int32_t> program = oxrt::recordPrograms(trace.records, mask, {SLOTS[kind]});")
-                for function, call in calls:
-                    number = self._dispatch.number(function)
-                    self._writer.line(f"if (const Mask own = mask & (program == int32_t({number})); oxrt::any(own))")
-                    with self._writer.indented():
-                        self._writer.line(f"{call};")
-                if self._pipeline.options.validation:
-                    known = " | ".join(f"(program == int32_t({self._dispatch.number(function)}))" for function in functions)
-                    self._writer.line(f"oxrt::payloadMismatch(trace, mask & !({known} | (program == int32_t(OXRT_NO_PROGRAM))));")
+            if kind is ProgramKind.INTERSECTION:
+                self._define_intersection(owner, calls, payload)
+            else:
+                self._define_masked(f"{owner}::{FUNCTIONS[kind]}", SLOTS[kind], calls, payload)
             self._writer.line()
 
-    def _lane_call(self, program: Function, payload: Struct | None, owner: str) -> str:
+    def _define_intersection(self, owner: str, calls: list[tuple[Function, str]], payload: str) -> None:
+        """One record for all lanes: as in scalar code."""
+        head = f"void {owner}::intersection(Rays& trace, Mask mask, {payload}, const OxrtRecordHeader& record)"
+        with self._writer.block(head), self._writer.block(f"switch (record.programs[{SLOTS[ProgramKind.INTERSECTION]}])"):
+            for function, call in calls:
+                self._writer.line(f"case {self._dispatch.number(function)}: {call}; break;")
+            if self._pipeline.options.validation:
+                self._writer.line("case OXRT_NO_PROGRAM: break;")
+                self._writer.line("default: oxrt::payloadMismatch(trace, mask); break;")
+            else:
+                self._writer.line("default: break;")
+
+    def _define_masked(self, name: str, slot: str, calls: list[tuple[Function, str]], payload: str) -> None:
+        """Each program for the lanes whose record names it."""
+        with self._writer.block(f"void {name}(Rays& trace, Mask mask, {payload})"):
+            self._writer.line(f"const Wide<int32_t> program = oxrt::recordPrograms(trace.records, mask, {slot});")
+            for function, call in calls:
+                number = self._dispatch.number(function)
+                self._writer.line(f"if (const Mask own = mask & (program == int32_t({number})); oxrt::any(own))")
+                with self._writer.indented():
+                    self._writer.line(f"{call};")
+            if self._pipeline.options.validation:
+                known = " | ".join(f"(program == int32_t({self._dispatch.number(function)}))" for function, _ in calls)
+                self._writer.line(f"oxrt::payloadMismatch(trace, mask & !({known} | (program == int32_t(OXRT_NO_PROGRAM))));")
+
+    def _lane_call(self, program: Function, payload: Struct | None, owner: str, mask: str) -> str:
         clone = self._clones.analysis.program(program)
-        arguments = ["trace" if self._signatures.needs(program.name).ray else "*trace.thread", "own"]
+        arguments = ["trace" if self._signatures.needs(program.name).ray else "*trace.thread", mask]
         own = payload_of(program)
         for parameter in program.parameters:
             type_ = self._types.name(parameter.local.type)
@@ -172,7 +193,10 @@ class SpmdFile(PipelineFile):
                 case ParameterRole.ATTRIBUTES:
                     arguments.append(f"oxrt::getAttributes<{type_}>(trace)")
                 case ParameterRole.RECORD:
-                    arguments.append(f"oxrt::loadRecord<{type_}>(trace.records, own)")
+                    is_one = program.kind is ProgramKind.INTERSECTION
+                    arguments.append(
+                        f"oxrt::recordData<{type_}>(record)" if is_one else f"oxrt::loadRecord<{type_}>(trace.records, {mask})"
+                    )
                 case ParameterRole.VALUE:
                     raise AssertionError(f"{program.name} has an ordinary parameter")
         template = f"<{owner}>" if self._signatures.needs(program.name).programs else ""

@@ -40,17 +40,30 @@ from optixc.passes.regions import Region, homes
 
 _VARYING_OF_THREAD = frozenset({"get_launch_index", "get_exception_code", *(f"get_exception_detail_{i}" for i in range(8))})
 _REPORT = "report_intersection"
+COMMON_IN_INTERSECTION = frozenset(
+    """get_primitive_index get_sbt_gas_index get_instance_id get_instance_index get_gas_traversable_handle get_cluster_id
+    get_transform_list_size get_transform_list_handle""".split()
+)
+"""What all lanes share while an intersection program runs: it runs for one primitive at a time."""
+
 _VARYING_STATES = frozenset({State.RAY, State.HIT_OBJECT})
+
+
+Key = tuple[str, tuple[bool, ...], bool]
 
 
 @dataclass
 class Clone:
-    """A function with known parameters. `varying`: names of varying locals and parameters. `divergent`: ids of the if statements
-    whose condition varies, and of the loops that lanes leave or continue at different times. `exits`: ids of the statements that
-    a lane may leave by break, continue or return while others stay."""
+    """A function with known parameters.
+
+    `in_intersection`: it is, or serves, an intersection program. `varying`: names of varying locals and parameters. `divergent`: ids
+    of the if statements whose condition varies, and of the loops that lanes leave or continue at different times. `exits`: ids of the
+    statements that a lane may leave by break, continue or return while others stay.
+    """
 
     function: Function
     parameters: tuple[bool, ...]
+    in_intersection: bool
     varying: set[str] = field(default_factory=set)
     divergent: set[int] = field(default_factory=set)
     exits: set[int] = field(default_factory=set)
@@ -58,8 +71,8 @@ class Clone:
     result_varies: bool = False
 
     @property
-    def key(self) -> tuple[str, tuple[bool, ...]]:
-        return (self.function.name, self.parameters)
+    def key(self) -> Key:
+        return (self.function.name, self.parameters, self.in_intersection)
 
     def parameters_after(self) -> tuple[bool, ...]:
         """Which parameters vary once the function ran: those by reference may have become varying."""
@@ -73,21 +86,21 @@ class UniformityAnalysis:
         self._helpers = helpers
         self._may_throw = may_throw
         self._leaving: dict[str, bool] = {}
-        self._clones: dict[tuple[str, tuple[bool, ...]], Clone] = {}
-        self._unfinished: set[tuple[str, tuple[bool, ...]]] = set()
+        self._clones: dict[Key, Clone] = {}
+        self._unfinished: set[Key] = set()
 
     def program(self, function: Function) -> Clone:
-        """A program: what it gets of rays and hits varies, except for the record of a launch."""
-        is_launch = function.kind in (ProgramKind.RAYGEN, ProgramKind.EXCEPTION)
-        varying = tuple(not (is_launch and p.role is ParameterRole.RECORD) for p in function.parameters)
-        return self._clone(function, varying)
+        """A program: what it gets of rays and hits varies, except for the record of a launch or of an intersection."""
+        has_one_record = function.kind in (ProgramKind.RAYGEN, ProgramKind.EXCEPTION, ProgramKind.INTERSECTION)
+        varying = tuple(not (has_one_record and p.role is ParameterRole.RECORD) for p in function.parameters)
+        return self._clone(function, varying, function.kind is ProgramKind.INTERSECTION)
 
-    def helper(self, name: str, arguments: tuple[bool, ...]) -> Clone:
+    def helper(self, name: str, arguments: tuple[bool, ...], in_intersection: bool) -> Clone:
         """The clone of a helper for arguments that vary or not, where parameters by reference that become varying are so from the
         beginning."""
         function = self._helpers[name]
         while True:
-            clone = self._clone(function, arguments)
+            clone = self._clone(function, arguments, in_intersection)
             after = tuple(
                 before or (late and is_reference_type(parameter.local.type))
                 for before, late, parameter in zip(arguments, clone.parameters_after(), function.parameters, strict=True)
@@ -120,8 +133,8 @@ class UniformityAnalysis:
         """Whether lanes may have different values of an expression of the clone's function."""
         return varies(expression, clone, self)
 
-    def _clone(self, function: Function, parameters: tuple[bool, ...]) -> Clone:
-        key = (function.name, parameters)
+    def _clone(self, function: Function, parameters: tuple[bool, ...], in_intersection: bool) -> Clone:
+        key = (function.name, parameters, in_intersection)
         if key in self._unfinished:
             # what reaches itself again while it is analysed is taken as varying altogether
             found = self._clones[key]
@@ -130,7 +143,7 @@ class UniformityAnalysis:
             return found
         if key in self._clones:
             return self._clones[key]
-        clone = Clone(function, parameters)
+        clone = Clone(function, parameters, in_intersection)
         clone.varying = {p.local.name for p, varies in zip(function.parameters, parameters, strict=True) if varies}
         self._clones[key] = clone
         self._unfinished.add(key)
@@ -256,7 +269,8 @@ class _FunctionAnalysis:
         self._clone.exits.update(id(owner) for owner in owners)
 
     def _call(self, statement: CallHelper, path: Region) -> None:
-        callee = self._analysis.helper(statement.function, tuple(self.varies(argument) for argument in statement.arguments))
+        varying = tuple(self.varies(argument) for argument in statement.arguments)
+        callee = self._analysis.helper(statement.function, varying, self._clone.in_intersection)
         for parameter, argument, varies in zip(callee.function.parameters, statement.arguments, callee.parameters, strict=True):
             if is_reference_type(argument.type) and parameter.written:
                 self._store(argument, varies, path)
@@ -275,10 +289,12 @@ def varies(expression: Expr, clone: Clone, analysis: UniformityAnalysis) -> bool
         case LocalRef(local=local):
             return local.name in clone.varying
         case IntrinsicCall(name=name):
-            if INTRINSICS[name].state in _VARYING_STATES or name in _VARYING_OF_THREAD:
+            is_common = clone.in_intersection and name in COMMON_IN_INTERSECTION
+            if not is_common and (INTRINSICS[name].state in _VARYING_STATES or name in _VARYING_OF_THREAD):
                 return True
         case HelperCall(function=function, arguments=arguments):
-            return analysis.helper(function, tuple(varies(argument, clone, analysis) for argument in arguments)).result_varies
+            varying = tuple(varies(argument, clone, analysis) for argument in arguments)
+            return analysis.helper(function, varying, clone.in_intersection).result_varies
         case _:
             pass
     return any(varies(operand, clone, analysis) for operand in operands(expression))

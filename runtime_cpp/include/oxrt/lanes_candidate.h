@@ -1,7 +1,4 @@
-/* Embree's callbacks for packets: candidates of all lanes judged at once, intersection programs over lanes.
- *
- * The order of decisions is that of device_candidate.h and device_custom.h, lane by lane the same.
- */
+/* Embree's filter callback for packets: candidates of all lanes judged at once. The order of decisions is that of device_candidate.h. */
 #ifndef OXRT_LANES_CANDIDATE_H
 #define OXRT_LANES_CANDIDATE_H
 
@@ -20,11 +17,18 @@ template <int W> struct CandidateLanes : RayLanes<W> {
     Lanes<bool, W> ignored, stopped; /* what any-hit programs decided */
     Lanes<bool, W> ended;            /* lanes whose program called something that does not return */
     Lanes<bool, W> isTerminated;
-    Lanes<bool, W> runsAnyHit;
     Lanes<float, W> closest;         /* t of the closest accepted hits, or the callers' tmax */
     Lanes<float, W> closestInEmbree; /* what stands for `closest` in Embree's packet */
     Lanes<uint32_t, W> committedKind;
     Lanes<uint32_t, W> committedAttributes[8];
+
+    /* while an intersection program runs: what all lanes share */
+    Ray common;
+    uint32_t embreeGeometry;
+    bool runsAnyHit;
+    bool isCoherent;      /* then Embree tests no boxes for single lanes */
+    bool hasCommonRecord; /* SBT offset and stride are the same in all lanes */
+    Vector<Lanes<float, W>, 3> inverseDirection; /* of the world's rays, if they are coherent */
 
     OXRT_INLINE explicit CandidateLanes(typename Packet<W>::RayHit& rays) : RayLanes<W>(rays) {}
 };
@@ -164,167 +168,6 @@ template <class Programs, bool MAY_CULL, int W> void filterCandidates(const RTCF
         ray.closest = select(stopped, ray.t, ray.closest);
         stopTraversals(ray, stopped);
     }
-}
-
-/* ---- custom primitives -------------------------------------------------------------------------------------------------------- */
-
-/* The lanes whose ray meets the box of a scene's only primitive. */
-template <int W> Lanes<bool, W> meetingBox(const CandidateLanes<W>& ray) {
-    uint32_t bits = 0;
-    eachLane(ray.active, [&](int lane) {
-        RTCRay one{};
-        one.org_x = ray.objectRay->org_x[lane];
-        one.org_y = ray.objectRay->org_y[lane];
-        one.org_z = ray.objectRay->org_z[lane];
-        one.dir_x = ray.objectRay->dir_x[lane];
-        one.dir_y = ray.objectRay->dir_y[lane];
-        one.dir_z = ray.objectRay->dir_z[lane];
-        bits |= uint32_t(meetsBox(one, ray.commonGeometry->vertices, ray.tmin[lane], ray.closest[lane])) << lane;
-    });
-    return Lanes<bool, W>::ofBits(bits);
-}
-
-/* Runs the intersection programs of one custom primitive for the lanes to which Embree offers it. */
-template <class Programs, int W>
-void runIntersections(const int* valid, RTCRayQueryContext* context, void* packetRay, typename CandidateLanes<W>::PacketHit* hit,
-                      uint32_t geometry,
-                      uint32_t primitive) {
-    using Scalar = typename Programs::Scalar;
-    CandidateLanes<W>& ray = *reinterpret_cast<QueryLanes<W>*>(context)->candidates;
-    ray.active = without(loadValid<W>(valid), ray.isTerminated);
-    if (none(ray.active))
-        return;
-    const uint32_t instance = context->instID[0];
-    ray.commonInstance = instance == RTC_INVALID_GEOMETRY_ID ? nullptr : ray.root->instances + instance;
-    const OxrtTraversableView& structure = ray.commonInstance ? *ray.commonInstance->child : *ray.root;
-    ray.commonGeometry = structure.geometries + geometry;
-    storeLanes<uint32_t, W>(ray.packet.hit.primID, primitive);
-    storeLanes<uint32_t, W>(ray.packet.hit.geomID, geometry);
-    storeLanes<uint32_t, W>(ray.packet.hit.instID[0], instance);
-    ray.objectRay = static_cast<typename CandidateLanes<W>::PacketRay*>(packetRay);
-    ray.embreeHit = hit;
-    // what Embree itself found since
-    const Lanes<float, W> tfar = packetLanes<W>(ray.objectRay->tfar);
-    const Lanes<bool, W> nearer = ray.active & (tfar != ray.closestInEmbree);
-    ray.closest = select(nearer, tfar, ray.closest);
-    ray.closestInEmbree = select(nearer, tfar, ray.closestInEmbree);
-    if (structure.geometryCount == 1 && ray.commonGeometry->primitiveCount == 1 && ray.commonGeometry->keyCount == 1)
-        ray.active = meetingBox(ray);
-    if (any(ray.active) && (Scalar::hasAnyHit || (ray.flags & RAY_CULL_ANY))) {
-        const Lanes<uint32_t, W> flags = geometryFlags(ray);
-        const Lanes<uint32_t, W> instanceFlags = ray.commonInstance ? ray.commonInstance->flags : 0u;
-        ray.runsAnyHit = anyHitEnabled(ray, instanceFlags, flags);
-        if (ray.flags & RAY_CULL_ANY)
-            ray.active = without(ray.active, culledLanes(ray, instanceFlags, flags, ray.runsAnyHit));
-    }
-    if (none(ray.active))
-        return;
-    ray.t = ray.closest;
-    ray.ended = false;
-    ray.active = findHitRecords(ray);
-    if (none(ray.active))
-        return;
-    const Lanes<bool, W> ran = ray.active;
-    Programs::intersection(ray, ran, *static_cast<typename Programs::Payload*>(ray.payload));
-    if constexpr (Scalar::mayThrow)
-        stopTraversals(ray, ran & ray.thread->thrown);
-}
-template <class Programs, int W> void intersectCustoms(const RTCIntersectFunctionNArguments* a) {
-    if (const OxrtOwnShape* own = ownShape(*a))
-        return own->intersect(a, nullptr); /* curves with filters are traced lane by lane */
-    auto& rayhit = *static_cast<typename Packet<W>::RayHit*>(a->rayhit);
-    runIntersections<Programs, W>(a->valid, a->context, &rayhit.ray, &rayhit.hit, a->geomID, a->primID);
-}
-template <class Programs, int W> void occludeCustoms(const RTCOccludedFunctionNArguments* a) {
-    if (const OxrtOwnShape* own = ownShape(*a))
-        return own->occluded(a, nullptr);
-    runIntersections<Programs, W>(a->valid, a->context, a->ray, nullptr, a->geomID, a->primID);
-}
-
-/* Attribute words of lanes. */
-template <int W> struct AttributeLanes {
-    Lanes<uint32_t, W> words[8];
-    int count = 0;
-};
-template <int W, class... T> OXRT_INLINE AttributeLanes<W> attributeLanes(T... values) {
-    AttributeLanes<W> result;
-    ((result.words[result.count++] = bitCast<uint32_t>(values)), ...);
-    return result;
-}
-template <class Attributes, int W> OXRT_INLINE AttributeLanes<W> attributesToLanes(const Wide<Attributes, W>& attributes) {
-    AttributeLanes<W> result;
-    result.count = int(sizeof(Attributes) / 4);
-    if constexpr (Wide<Attributes, W>::hasWrappedFields)
-        for (int lane = 0; lane < W; ++lane) {
-            Attributes own;
-            extractLane(own, attributes, lane);
-            uint32_t words[8];
-            __builtin_memcpy(words, &own, sizeof(own));
-            for (int i = 0; i < result.count; ++i)
-                result.words[i].set(lane, words[i]);
-        }
-    else {
-        int next = 0;
-        Wide<Attributes, W> copy = attributes;
-        eachPart([&](auto& part) { result.words[next++] = bitCast<uint32_t>(part); }, copy);
-    }
-    return result;
-}
-
-/* Makes the reported hits the closest ones of their lanes. */
-template <int W>
-OXRT_INLINE void commitReports(CandidateLanes<W>& ray, Lanes<bool, W> mask, Lanes<float, W> t, Lanes<uint32_t, W> kind,
-                               const AttributeLanes<W>& attributes) {
-    for (int i = 0; i < attributes.count; ++i)
-        ray.committedAttributes[i] = select(mask, attributes.words[i], ray.committedAttributes[i]);
-    ray.committedKind = select(mask, kind, ray.committedKind);
-    ray.closest = select(mask, t, ray.closest);
-    if (!ray.embreeHit) {
-        stopTraversals(ray, mask);
-        return;
-    }
-    auto& hit = *ray.embreeHit;
-    const auto& own = ray.packet.hit;
-    storeLanes<uint32_t, W>(hit.primID, select(mask, packetLanes<W>(own.primID), packetLanes<W>(hit.primID)));
-    storeLanes<uint32_t, W>(hit.geomID, select(mask, packetLanes<W>(own.geomID), packetLanes<W>(hit.geomID)));
-    storeLanes<uint32_t, W>(hit.instID[0], select(mask, packetLanes<W>(own.instID[0]), packetLanes<W>(hit.instID[0])));
-    ray.closestInEmbree = select(mask, nextDown(t), ray.closestInEmbree);
-    auto& tfar = ray.objectRay->tfar;
-    storeLanes<float, W>(tfar, select(mask, ray.closestInEmbree, packetLanes<W>(tfar)));
-}
-
-/* Offers hits of the intersection program; the lanes where they are accepted. Lanes whose ray ends leave the program at once. */
-template <class Programs, int W>
-OXRT_INLINE Lanes<bool, W> reportIntersection(RayLanes<W>& base, Lanes<bool, W> mask, Wide<float, W> t, Wide<uint32_t, W> kind,
-                                              const AttributeLanes<W>& attributes = {}) {
-    CandidateLanes<W>& ray = candidatesOf(base);
-    Lanes<bool, W> accepted = mask & (ray.tmin <= t) & (t <= ray.closest);
-    if (none(accepted))
-        return accepted;
-    const Lanes<uint32_t, W> hitKind = kind & 0xFFu;
-    Lanes<bool, W> stopped = false;
-    if constexpr (Programs::Scalar::hasAnyHit)
-        if (const Lanes<bool, W> asked = accepted & ray.runsAnyHit; any(asked)) {
-            for (int i = 0; i < attributes.count; ++i)
-                ray.attributes[i] = attributes.words[i];
-            ray.kind = hitKind;
-            ray.t = t;
-            const Lanes<bool, W> outer = ray.active;
-            ray.active = asked;
-            accepted = without(accepted, asked) | runAnyHits<Programs>(ray);
-            ray.active = outer;
-            ray.t = ray.closest;
-            stopped = ray.stopped;
-        }
-    if (ray.flags & RAY_TERMINATE_ON_FIRST_HIT)
-        stopped |= accepted;
-    if (any(accepted))
-        commitReports(ray, accepted, t, hitKind, attributes);
-    if (any(stopped))
-        stopTraversals(ray, stopped);
-    ray.t = select(accepted, t, ray.t);
-    ray.ended |= stopped;
-    return accepted;
 }
 
 }  // namespace OXRT_ISA

@@ -5,7 +5,7 @@
 #ifndef OXRT_LANES_GRAPH_H
 #define OXRT_LANES_GRAPH_H
 
-#include <oxrt/lanes_candidate.h>
+#include <oxrt/lanes_custom.h>
 
 namespace oxrt {
 inline namespace OXRT_ISA {

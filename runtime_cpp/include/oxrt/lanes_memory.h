@@ -103,6 +103,7 @@ OXRT_INLINE void loadPart(VaryingArray<A, W>& to, const Places& places, int64_t 
     to.data = gather<uint64_t, W>(places, offset, mask);
     for (int axis = 0; axis < int(sizeof(to.shape) / sizeof(to.shape[0])); ++axis)
         to.shape[axis] = gather<uint64_t, W>(places, offset + 8 * (axis + 1), mask);
+    to.shared = {};
     to.isShared = false;
 }
 

@@ -32,6 +32,13 @@ OXRT_INLINE bool areCoherent(Lanes<bool, W> mask, const Wide<float3, W>& origin,
     return none(mask & !(isNear & (cosine * abs(cosine) > dot(direction, direction) * (0.25f * length2))));
 }
 
+/* Programs compute in lanes without a hit as well. What lay in memory would often be denormal numbers there, and each operation on one
+   costs more than the rest of a short program. */
+template <int W> OXRT_INLINE void clearHit(RayLanes<W>& ray) {
+    setPacket(ray.packet.hit.u, Lanes<float, W>(0.0f));
+    setPacket(ray.packet.hit.v, Lanes<float, W>(0.0f));
+}
+
 /* The masked lanes as one packet without callbacks; the lanes that hit something. */
 template <class Flags, bool ANY, int W> OXRT_INLINE Lanes<bool, W> traversePacket(RayLanes<W>& ray, Lanes<bool, W> mask, bool isCoherent) {
     alignas(4 * W) int valid[W];
@@ -46,6 +53,7 @@ template <class Flags, bool ANY, int W> OXRT_INLINE Lanes<bool, W> traversePacke
         RTCIntersectArguments arguments = {flags, RTC_FEATURE_FLAG_ALL, nullptr, nullptr, nullptr, 0.0f};
         setPacket<W>(ray.packet.hit.geomID, RTC_INVALID_GEOMETRY_ID);
         setPacket<W>(ray.packet.hit.instID[0], RTC_INVALID_GEOMETRY_ID);
+        clearHit(ray);
         Packet<W>::intersect(services, valid, ray.root->scene, ray.packet, &arguments);
         ray.t = packetLanes<W>(ray.packet.ray.tfar);
         return mask & (packetLanes<W>(ray.packet.hit.geomID) != RTC_INVALID_GEOMETRY_ID);
@@ -53,7 +61,7 @@ template <class Flags, bool ANY, int W> OXRT_INLINE Lanes<bool, W> traversePacke
 }
 
 /* Prepares the candidates of a trace with callbacks: the world's rays, and nothing found yet. */
-template <int W> OXRT_INLINE void beginCandidates(CandidateLanes<W>& candidates, const RayLanes<W>& ray, void* payload) {
+template <int W> OXRT_INLINE void beginCandidates(CandidateLanes<W>& candidates, const RayLanes<W>& ray, void* payload, bool isCoherent) {
     candidates.thread = ray.thread;
     candidates.payload = payload;
     candidates.readWord = ray.readWord;
@@ -67,9 +75,19 @@ template <int W> OXRT_INLINE void beginCandidates(CandidateLanes<W>& candidates,
     candidates.flags = ray.flags;
     candidates.ended = false;
     candidates.isTerminated = false;
+    candidates.common.thread = ray.thread->thread;
+    candidates.common.root = ray.root;
+    candidates.common.path = nullptr;
+    const Lanes<bool, W> differ = (ray.sbtOffset != ray.sbtOffset[0]) | (ray.sbtStride != ray.sbtStride[0]);
+    candidates.hasCommonRecord = none(differ);
+    candidates.isCoherent = isCoherent;
+    if (isCoherent)
+        candidates.inverseDirection = inverseOf(getWorldRayDirection(ray));
     candidates.closest = ray.tmax;
     candidates.closestInEmbree = packetLanes<W>(ray.packet.ray.tfar);
     candidates.committedKind = NO_REPORT;
+    for (int i = 0; i < 8; ++i)
+        candidates.committedAttributes[i] = 0u;
     auto& world = candidates.packet.ray;
     const auto& own = ray.packet.ray;
     __builtin_memcpy(world.org_x, own.org_x, sizeof(own.org_x));
@@ -96,7 +114,7 @@ OXRT_INLINE Lanes<bool, W> traverseCandidates(RayLanes<W>& ray, Lanes<bool, W> m
     using Known = FlagTraits<Flags>;
     typename Packet<W>::RayHit worlds;
     CandidateLanes<W> candidates(worlds);
-    beginCandidates(candidates, ray, payload);
+    beginCandidates(candidates, ray, payload, isCoherent);
     QueryLanes<W> query = {{{RTC_INVALID_GEOMETRY_ID}, {RTC_INVALID_GEOMETRY_ID}}, &candidates};
     alignas(4 * W) int valid[W];
     storeLanes<int32_t, W>(valid, select(mask, int32_t(-1), int32_t(0)));
@@ -124,6 +142,7 @@ OXRT_INLINE Lanes<bool, W> traverseCandidates(RayLanes<W>& ray, Lanes<bool, W> m
             arguments.intersect = intersectCustoms<Programs, W>;
         setPacket<W>(packet.hit.geomID, RTC_INVALID_GEOMETRY_ID);
         setPacket<W>(packet.hit.instID[0], RTC_INVALID_GEOMETRY_ID);
+        clearHit(ray);
         Packet<W>::intersect(services, valid, ray.root->scene, packet, &arguments);
         const Lanes<float, W> tfar = packetLanes<W>(packet.ray.tfar);
         Lanes<bool, W> isOwn = candidates.isTerminated;
@@ -183,6 +202,10 @@ template <class Programs, class Flags, bool ANY, int W>
 Lanes<bool, W> traverseLanes(RayLanes<W>& ray, Lanes<bool, W> mask, typename Programs::Payload& payload) {
     using Scalar = typename Programs::Scalar;
     uint32_t hits = 0;
+    clearHit(ray);
+    if constexpr (!ANY && Scalar::hasIntersection)
+        for (int i = 0; i < 8; ++i)
+            ray.attributes[i] = 0u;
     eachLane(mask, [&](int lane) {
         typename Scalar::Payload own;
         if constexpr (!isSame<typename Scalar::Payload, NoPayload>)
@@ -221,11 +244,11 @@ template <class Payload, int W> struct FoundLanes {
     Payload payload;
 };
 
-/* Traversals that call back, or walk a graph. Ray and payload come and go by value: a caller whose own were seen from here could not keep
+/* Traversals that call back, or walk a graph. Ray and payload are the caller's copies: if its own were seen from here, it could not keep
    them in registers, not even where nothing calls back. */
 template <class Programs, class Flags, bool ANY, int W>
-__attribute__((noinline)) FoundLanes<typename Programs::Payload, W> traverseApart(RayLanes<W> ray, Lanes<bool, W> mask,
-                                                                                  typename Programs::Payload payload, bool isCoherent) {
+__attribute__((noinline)) FoundLanes<typename Programs::Payload, W> traverseApart(RayLanes<W>& ray, Lanes<bool, W> mask,
+                                                                                  typename Programs::Payload& payload, bool isCoherent) {
     using Scalar = typename Programs::Scalar;
     constexpr bool filters = mayHaveCandidates<Scalar, Flags>;
     const bool mayFilterHere = filters && mayFilter<Scalar>(ray.flags, *ray.root);
@@ -267,7 +290,9 @@ OXRT_INLINE Lanes<bool, W> traverse(RayLanes<W>& ray, Lanes<bool, W> mask, typen
     }
     if (!__builtin_expect(isApart, hasCallbacks<Scalar, Flags>))
         return traversePacket<Flags, ANY>(ray, mask, isCoherent);
-    const auto found = traverseApart<Programs, Flags, ANY>(ray, mask, payload, isCoherent);
+    RayLanes<W> copy = ray;
+    typename Programs::Payload payloadCopy = payload;
+    const auto found = traverseApart<Programs, Flags, ANY>(copy, mask, payloadCopy, isCoherent);
     if constexpr (Scalar::hasAnyHit || Scalar::hasIntersection)
         payload = found.payload;
     if constexpr (!ANY)
