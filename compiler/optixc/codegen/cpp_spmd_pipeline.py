@@ -12,11 +12,13 @@ from dataclasses import replace
 from optixc.codegen.cpp_dispatch import FUNCTIONS, SLOTS
 from optixc.codegen.cpp_pipeline import PipelineFile, callees_first, structs_of
 from optixc.codegen.cpp_scalar import ScalarFunction
+from optixc.codegen.cpp_signatures import used_parameters
 from optixc.codegen.cpp_spmd import LaneFunction
 from optixc.codegen.cpp_spmd_clones import Clones
 from optixc.codegen.cpp_spmd_expr import PAYLOAD_GETTER, PAYLOAD_SETTER
 from optixc.codegen.cpp_spmd_types import WideTypes
-from optixc.codegen.needs import EXCEPTION_FLAG_STACK_OVERFLOW, options_of
+from optixc.codegen.cpp_types import word_count
+from optixc.codegen.needs import EXCEPTION_FLAG_STACK_OVERFLOW, REPORT, options_of
 from optixc.codegen.program_classes import ProgramClass, callables_nest, payload_of, reachable_functions
 from optixc.ir.intrinsic_rows import INTRINSICS
 from optixc.ir.intrinsics import State
@@ -138,6 +140,11 @@ class SpmdFile(PipelineFile):
             self._writer.line(f"using Payload = {payload};")
             if any(_uses_payload_words(self._pipeline, program) for _, functions in _present(programs) for program in functions):
                 self._writer.line("static constexpr bool usesPayloadWords = true;")
+            if any(_uses_payload(self._pipeline, program) for program in (*programs.anyhit, *programs.intersection)):
+                self._writer.line("static constexpr bool callbacksUsePayload = true;")
+            words = max((_reported_words(self._pipeline, program) for program in programs.intersection), default=0)
+            if words:
+                self._writer.line(f"static constexpr int attributeWords = {words};")
             for kind, _ in _present(programs):
                 record = ", const OxrtRecordHeader& record" if kind is ProgramKind.INTERSECTION else ""
                 self._writer.line(f"static void {FUNCTIONS[kind]}(Rays& trace, Mask mask, Payload& payload{record});")
@@ -304,6 +311,24 @@ def _present(programs: ProgramClass) -> list[tuple[ProgramKind, tuple[Function, 
         (ProgramKind.MISS, programs.miss),
     )
     return [(kind, functions) for kind, functions in kinds if functions]
+
+
+def _uses_payload(pipeline: Pipeline, program: Function) -> bool:
+    """Whether the program reads or writes the payload."""
+    names = {p.local.name for p in program.parameters if p.role is ParameterRole.PAYLOAD}
+    return bool(names & used_parameters(program)) or _uses_payload_words(pipeline, program)
+
+
+def _reported_words(pipeline: Pipeline, program: Function) -> int:
+    """The most attribute words that the program or a helper reports at once."""
+    most = 0
+    for function in reachable_functions(pipeline, program):
+        for statement in statements(function.body):
+            if isinstance(statement, CallIntrinsic) and statement.name == REPORT:
+                offered = statement.arguments[2:]
+                is_struct = len(offered) == 1 and isinstance(offered[0].type, Struct)
+                most = max(most, word_count(offered[0].type) if is_struct else len(offered))
+    return most
 
 
 def _uses_payload_words(pipeline: Pipeline, program: Function) -> bool:

@@ -27,10 +27,11 @@ template <int W> struct CandidateLanes : RayLanes<W> {
     uint32_t embreeGeometry;
     bool runsAnyHit;
     bool isCoherent;      /* then Embree tests no boxes for single lanes */
-    bool hasCommonRecord; /* SBT offset and stride are the same in all lanes */
+    bool hasCommonRecord; /* SBT offset and stride are the same in all lanes: */
+    uint32_t commonOffset, commonStride;
     Vector<Lanes<float, W>, 3> inverseDirection; /* of the world's rays, if they are coherent */
 
-    OXRT_INLINE explicit CandidateLanes(typename Packet<W>::RayHit& rays) : RayLanes<W>(rays) {}
+    OXRT_INLINE explicit CandidateLanes(PacketParts<W> rays) : RayLanes<W>(rays) {}
 };
 
 /* What Embree hands to the callbacks. */

@@ -79,9 +79,10 @@ OXRT_INLINE void runIntersections(CandidateLanes<W>& ray, Lanes<bool, W> mask, u
     ray.embreeGeometry = geometryId;
     // what Embree itself found since
     const Lanes<float, W> tfar = packetLanes<W>(ray.objectRay->tfar);
-    const Lanes<bool, W> nearer = mask & (tfar != ray.closestInEmbree);
-    ray.closest = select(nearer, tfar, ray.closest);
-    ray.closestInEmbree = select(nearer, tfar, ray.closestInEmbree);
+    if (const Lanes<bool, W> nearer = mask & (tfar != ray.closestInEmbree); any(nearer)) {
+        ray.closest = select(nearer, tfar, ray.closest);
+        ray.closestInEmbree = select(nearer, tfar, ray.closestInEmbree);
+    }
     const bool isLone = structure.geometryCount == 1 && geometry.primitiveCount == 1;
     if ((ray.isCoherent || isLone) && geometry.keyCount == 1) {
         const bool isWorld = ray.isCoherent && !common.instance;
@@ -100,16 +101,12 @@ OXRT_INLINE void runIntersections(CandidateLanes<W>& ray, Lanes<bool, W> mask, u
             return;
     }
     const uint32_t base = common.instance ? common.instance->sbtOffset : 0;
-    const Lanes<uint32_t, W> index = base + (geometry.recordBase + record) * ray.sbtStride + ray.sbtOffset;
     if (ray.hasCommonRecord)
-        runIntersection<Programs>(ray, mask, index[0]);
-    else
-        for (Lanes<bool, W> rest = mask; any(rest);) {
-            const uint32_t own = index[firstLane(rest)];
-            const Lanes<bool, W> equal = rest & (index == own);
-            runIntersection<Programs>(ray, equal, own);
-            rest = without(rest, equal);
-        }
+        runIntersection<Programs>(ray, mask, base + (geometry.recordBase + record) * ray.commonStride + ray.commonOffset);
+    else {
+        const Lanes<uint32_t, W> index = base + (geometry.recordBase + record) * ray.sbtStride + ray.sbtOffset;
+        eachValue(mask, index, [&ray](uint32_t own, Lanes<bool, W> equal) { runIntersection<Programs>(ray, equal, own); });
+    }
 }
 
 template <class Programs, int W> void intersectCustoms(const RTCIntersectFunctionNArguments* a) {

@@ -211,7 +211,7 @@ __attribute__((noinline)) Lanes<bool, W> traverseGraphPacket(RayLanes<W>& ray, L
         walk.intersectInstances.intersect = intersectInstances<Programs, W>;
         setPacket<W>(ray.packet.hit.geomID, RTC_INVALID_GEOMETRY_ID);
         setPacket<W>(ray.packet.hit.instID[0], RTC_INVALID_GEOMETRY_ID);
-        descend<Programs, false>(walk, ray.root, mask, origin, direction, ray.packet.ray, ray.packet);
+        descend<Programs, false>(walk, ray.root, mask, origin, direction, ray.packet.ray, ray.packet.whole());
         ray.t = packetLanes<W>(ray.packet.ray.tfar);
         return mask & (packetLanes<W>(ray.packet.hit.geomID) != RTC_INVALID_GEOMETRY_ID);
     }

@@ -50,6 +50,19 @@ template <class T, int W> OXRT_INLINE bool nextTurn(Range<T>& range, Lanes<bool,
     return true;
 }
 
+/* ---- groups of equal lanes ---------------------------------------------------------------------------------------------------- */
+
+/* f(value, lanes that have it) for each distinct value among the lanes of the mask. */
+template <class T, int W, class F> OXRT_INLINE void eachValue(Lanes<bool, W> mask, Lanes<T, W> values, F f) {
+    while (any(mask)) {
+        const T value = values[firstLane(mask)];
+        const Lanes<bool, W> equal = mask & (values == value);
+        f(value, equal);
+        mask = without(mask, equal);
+    }
+}
+template <class T, int W, class F> requires Scalar<T> OXRT_INLINE void eachValue(Lanes<bool, W> mask, T value, F f) { f(value, mask); }
+
 /* ---- checks ------------------------------------------------------------------------------------------------------------------- */
 
 /* An active lane, 0 if there is none. */

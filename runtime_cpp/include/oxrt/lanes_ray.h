@@ -64,6 +64,18 @@ template <> struct Packet<16> {
     }
 };
 
+/* Embree's packet: the rays and the hits, which need not lie together while callbacks run. */
+template <int W> struct PacketParts {
+    using Whole = typename Packet<W>::RayHit;
+    decltype(Whole::ray)& ray;
+    decltype(Whole::hit)& hit;
+
+    OXRT_INLINE PacketParts(Whole& whole) : ray(whole.ray), hit(whole.hit) {}
+    OXRT_INLINE PacketParts(decltype(Whole::ray)& rays, decltype(Whole::hit)& hits) : ray(rays), hit(hits) {}
+    /* Of a packet made in one piece. */
+    OXRT_INLINE Whole& whole() const { return reinterpret_cast<Whole&>(ray); }
+};
+
 /* Where the SBT record of each lane is. */
 template <int W> struct RecordLanes {
     const OxrtRecordHeader* common; /* the one of all lanes, null if they differ */
@@ -73,7 +85,7 @@ template <int W> struct RecordLanes {
 /* One trace of all lanes, or the candidates that a callback judges. Rays and hits stay in Embree's packet; what is derived from them is
    computed where it is read. */
 template <int W> struct RayLanes {
-    typename Packet<W>::RayHit& packet; /* not a member: Embree sees its address, and nothing else of the ray */
+    PacketParts<W> packet; /* not its memory: Embree sees that, and nothing else of the ray */
     LanesThread<W>* thread;
     void* payload;
     const OxrtTraversableView* root;
@@ -93,7 +105,7 @@ template <int W> struct RayLanes {
     Lanes<uint32_t, W> (*readWord)(const void* payload, int index) = nullptr;
     void (*writeWord)(void* payload, int index, Lanes<bool, W> mask, Lanes<uint32_t, W> words) = nullptr;
 
-    OXRT_INLINE explicit RayLanes(typename Packet<W>::RayHit& rays) : packet(rays) {}
+    OXRT_INLINE explicit RayLanes(PacketParts<W> rays) : packet(rays) {}
 };
 
 template <int W> OXRT_INLINE Lanes<float, W> packetLanes(const float (&values)[W]) { return loadLanes<float, W>(values); }

@@ -12,6 +12,8 @@ struct NoLanePrograms {
     using Scalar = NoPrograms;
     using Payload = NoPayload;
     static constexpr bool usesPayloadWords = false;
+    static constexpr bool callbacksUsePayload = false; /* any-hit and intersection programs do */
+    static constexpr int attributeWords = 0;           /* the most that an intersection program reports */
 };
 
 /* A fault of the lowest lane of the mask, if there is one. */

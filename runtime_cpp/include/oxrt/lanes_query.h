@@ -1,0 +1,337 @@
+/* Embree's queries for packets, and which of them a trace takes.
+ *
+ * Rays go to Embree as packets, COHERENT where they start near each other in about one direction, with any-hit and intersection programs
+ * over lanes as callbacks. Divergent rays with any-hit programs on triangles are traced one by one with the scalar programs: candidates
+ * come in another order for each lane, and packets with rejecting filters are slower (measured: README).
+ */
+#ifndef OXRT_LANES_QUERY_H
+#define OXRT_LANES_QUERY_H
+
+#include <oxrt/lanes_graph.h>
+
+namespace oxrt {
+inline namespace OXRT_ISA {
+
+/* ---- packets ------------------------------------------------------------------------------------------------------------------ */
+
+/* Whether to trace the active rays together: at least half the lanes, all directions within 60 degrees of the first ray's, all origins
+   within a quarter of its length. Measured on ambient occlusion, in strata (a quarter faster) and without (no slower), and on path tracing
+   (no slower); the angle alone or the origins alone make some of them slower by half. */
+template <int W>
+OXRT_INLINE bool areCoherent(Lanes<bool, W> mask, const Wide<float3, W>& origin, const Wide<float3, W>& direction, Lanes<float, W> tmax) {
+    if (__builtin_popcount(mask.bits()) < W / 2)
+        return false;
+    const int lane = firstLane(mask);
+    const Wide<float3, W> apart = origin - float3(origin.x[lane], origin.y[lane], origin.z[lane]);
+    const float3 first(direction.x[lane], direction.y[lane], direction.z[lane]);
+    const float reach = 0.25f * tmax[lane];
+    const float length2 = dot(first, first);
+    const Lanes<float, W> cosine = dot(direction, first);
+    const Lanes<bool, W> isNear = dot(apart, apart) <= reach * reach * length2;
+    return none(mask & !(isNear & (cosine * abs(cosine) > dot(direction, direction) * (0.25f * length2))));
+}
+
+/* Nothing is hit. Programs compute in lanes without a hit as well. What lay in memory would often be denormal numbers there, and each operation on one
+   costs more than the rest of a short program. */
+template <int W> OXRT_INLINE void clearHits(RayLanes<W>& ray) {
+    setPacket<W>(ray.packet.hit.geomID, RTC_INVALID_GEOMETRY_ID);
+    setPacket<W>(ray.packet.hit.instID[0], RTC_INVALID_GEOMETRY_ID);
+    setPacket(ray.packet.hit.u, Lanes<float, W>(0.0f));
+    setPacket(ray.packet.hit.v, Lanes<float, W>(0.0f));
+}
+
+/* The masked lanes as one packet without callbacks; the lanes that hit something. */
+template <class Flags, bool ANY, int W> OXRT_INLINE Lanes<bool, W> traversePacket(RayLanes<W>& ray, Lanes<bool, W> mask, bool isCoherent) {
+    alignas(4 * W) int valid[W];
+    storeLanes<int32_t, W>(valid, select(mask, int32_t(-1), int32_t(0)));
+    const OxrtServices& services = *ray.thread->thread->launch->services;
+    const unsigned flags = isCoherent ? RTC_RAY_QUERY_FLAG_COHERENT : RTC_RAY_QUERY_FLAG_INCOHERENT;
+    if constexpr (ANY) {
+        RTCOccludedArguments arguments = {flags, RTC_FEATURE_FLAG_ALL, nullptr, nullptr, nullptr, 0.0f};
+        Packet<W>::occluded(services, valid, ray.root->scene, ray.packet.whole(), &arguments);
+        return mask & (packetLanes<W>(ray.packet.ray.tfar) < 0.0f);
+    } else {
+        RTCIntersectArguments arguments = {flags, RTC_FEATURE_FLAG_ALL, nullptr, nullptr, nullptr, 0.0f};
+        clearHits(ray);
+        Packet<W>::intersect(services, valid, ray.root->scene, ray.packet.whole(), &arguments);
+        ray.t = packetLanes<W>(ray.packet.ray.tfar);
+        return mask & (packetLanes<W>(ray.packet.hit.geomID) != RTC_INVALID_GEOMETRY_ID);
+    }
+}
+
+/* ---- packets with callbacks --------------------------------------------------------------------------------------------------- */
+
+/* What the callbacks of a trace need of its ray; nothing found yet. */
+template <class Programs, int W>
+OXRT_INLINE void beginCandidates(CandidateLanes<W>& candidates, const RayLanes<W>& ray, void* payload, bool isCoherent) {
+    candidates.thread = ray.thread;
+    candidates.payload = payload;
+    candidates.readWord = ray.readWord;
+    candidates.writeWord = ray.writeWord;
+    candidates.root = ray.root;
+    candidates.tmin = ray.tmin;
+    candidates.tmax = ray.tmax;
+    candidates.mask = ray.mask;
+    candidates.sbtOffset = ray.sbtOffset;
+    candidates.sbtStride = ray.sbtStride;
+    candidates.flags = ray.flags;
+    candidates.ended = false;
+    candidates.isTerminated = false;
+    candidates.common.thread = ray.thread->thread;
+    candidates.common.root = ray.root;
+    candidates.common.path = nullptr;
+    candidates.commonOffset = ray.sbtOffset[0];
+    candidates.commonStride = ray.sbtStride[0];
+    candidates.hasCommonRecord = none((ray.sbtOffset != candidates.commonOffset) | (ray.sbtStride != candidates.commonStride));
+    candidates.isCoherent = isCoherent;
+    if (Programs::Scalar::hasIntersection && isCoherent)
+        candidates.inverseDirection = inverseOf(getWorldRayDirection(ray));
+    candidates.closest = ray.tmax;
+    candidates.closestInEmbree = packetLanes<W>(ray.packet.ray.tfar);
+    candidates.committedKind = NO_REPORT;
+    for (int i = 0; i < Programs::attributeWords; ++i)
+        candidates.committedAttributes[i] = 0u;
+}
+
+/* Embree turns rays into object space in place; programs see the world's. */
+template <class PacketRay> OXRT_INLINE void copyRays(PacketRay& to, const PacketRay& from) {
+    __builtin_memcpy(to.org_x, from.org_x, sizeof(from.org_x));
+    __builtin_memcpy(to.org_y, from.org_y, sizeof(from.org_y));
+    __builtin_memcpy(to.org_z, from.org_z, sizeof(from.org_z));
+    __builtin_memcpy(to.dir_x, from.dir_x, sizeof(from.dir_x));
+    __builtin_memcpy(to.dir_y, from.dir_y, sizeof(from.dir_y));
+    __builtin_memcpy(to.dir_z, from.dir_z, sizeof(from.dir_z));
+    __builtin_memcpy(to.time, from.time, sizeof(from.time));
+}
+
+/* Embree drops lanes whose interval is empty or one number before it calls back; reports may be accepted in one number. */
+template <int W> OXRT_INLINE void openEmptyIntervals(CandidateLanes<W>& candidates, typename CandidateLanes<W>::PacketRay& packet) {
+    const Lanes<bool, W> isEmpty = packetLanes<W>(packet.tnear) >= packetLanes<W>(packet.tfar);
+    setPacket(packet.tnear, select(isEmpty, candidates.tmin, packetLanes<W>(packet.tnear)));
+    setPacket(packet.tfar, select(isEmpty, nextUp(candidates.tmax), packetLanes<W>(packet.tfar)));
+    candidates.closestInEmbree = packetLanes<W>(packet.tfar);
+}
+
+/* The query of the masked lanes, whose candidates the programs judge. */
+template <class Programs, class Flags, bool ANY, int W>
+__attribute__((noinline)) void queryCandidates(CandidateLanes<W>& candidates, typename Packet<W>::RayHit& packet, Lanes<bool, W> mask) {
+    using Scalar = typename Programs::Scalar;
+    QueryLanes<W> query = {{{RTC_INVALID_GEOMETRY_ID}, {RTC_INVALID_GEOMETRY_ID}}, &candidates};
+    alignas(4 * W) int valid[W];
+    storeLanes<int32_t, W>(valid, select(mask, int32_t(-1), int32_t(0)));
+    const OxrtServices& services = *candidates.thread->thread->launch->services;
+    unsigned flags = candidates.isCoherent ? RTC_RAY_QUERY_FLAG_COHERENT : RTC_RAY_QUERY_FLAG_INCOHERENT;
+    RTCFilterFunctionN filter = nullptr;
+    if constexpr (mayHaveCandidates<Scalar, Flags>) {
+        if (mayFilter<Scalar>(candidates.flags, *candidates.root))
+            filter = filterCandidates<Programs, FlagTraits<Flags>::mayCull, W>;
+        if (filtersEverything<Scalar>(candidates.flags, *candidates.root))
+            flags |= RTC_RAY_QUERY_FLAG_INVOKE_ARGUMENT_FILTER;
+    }
+    if constexpr (Scalar::hasIntersection)
+        openEmptyIntervals(candidates, packet.ray);
+    if constexpr (ANY) {
+        RTCOccludedArguments arguments = {flags, RTC_FEATURE_FLAG_ALL, &query.context, filter, nullptr, 0.0f};
+        if constexpr (Scalar::hasIntersection)
+            arguments.occluded = occludeCustoms<Programs, W>;
+        Packet<W>::occluded(services, valid, candidates.root->scene, packet, &arguments);
+    } else {
+        RTCIntersectArguments arguments = {flags, RTC_FEATURE_FLAG_ALL, &query.context, filter, nullptr, 0.0f};
+        if constexpr (Scalar::hasIntersection)
+            arguments.intersect = intersectCustoms<Programs, W>;
+        Packet<W>::intersect(services, valid, candidates.root->scene, packet, &arguments);
+    }
+}
+
+/* The masked lanes as one packet with callbacks; the lanes that hit something. Ray and payload keep their addresses to themselves: what
+   callbacks see are copies, so that the rest of the program can hold its own in registers. */
+template <class Programs, class Flags, bool ANY, int W>
+OXRT_INLINE Lanes<bool, W> traverseCandidates(RayLanes<W>& ray, Lanes<bool, W> mask, typename Programs::Payload& payload, bool isCoherent) {
+    using Scalar = typename Programs::Scalar;
+    typename CandidateLanes<W>::PacketRay world;
+    typename CandidateLanes<W>::PacketHit hits;
+    if (ray.root->instances)
+        copyRays(world, ray.packet.ray);
+    CandidateLanes<W> candidates(PacketParts<W>(ray.root->instances ? world : ray.packet.ray, hits));
+    typename Programs::Payload payloadCopy;
+    if constexpr (Programs::callbacksUsePayload)
+        payloadCopy = payload;
+    beginCandidates<Programs>(candidates, ray, &payloadCopy, isCoherent);
+    if constexpr (!ANY)
+        clearHits(ray);
+    queryCandidates<Programs, Flags, ANY>(candidates, ray.packet.whole(), mask);
+    if constexpr (Programs::callbacksUsePayload)
+        payload = payloadCopy;
+    const Lanes<float, W> tfar = packetLanes<W>(ray.packet.ray.tfar);
+    if constexpr (ANY)
+        return mask & (candidates.isTerminated | (tfar < 0.0f));
+    else {
+        Lanes<bool, W> isOwn = candidates.isTerminated;
+        if constexpr (Scalar::hasIntersection) {
+            isOwn |= (tfar == candidates.closestInEmbree) & (candidates.committedKind != NO_REPORT);
+            ray.kind = candidates.committedKind;
+            for (int i = 0; i < Programs::attributeWords; ++i)
+                ray.attributes[i] = candidates.committedAttributes[i];
+        }
+        ray.t = select(isOwn, candidates.closest, tfar);
+        return mask & (packetLanes<W>(ray.packet.hit.geomID) != RTC_INVALID_GEOMETRY_ID);
+    }
+}
+
+/* ---- one lane after the other ------------------------------------------------------------------------------------------------- */
+
+/* One lane's ray for the scalar query. */
+template <int W> OXRT_INLINE void scalarRay(Ray& one, const RayLanes<W>& ray, void* payload, int lane) {
+    const auto& packet = ray.packet.ray;
+    one.thread = &ray.thread->atLane(lane);
+    one.payload = payload;
+    one.root = ray.root;
+    one.path = nullptr;
+    one.origin = {packet.org_x[lane], packet.org_y[lane], packet.org_z[lane]};
+    one.direction = {packet.dir_x[lane], packet.dir_y[lane], packet.dir_z[lane]};
+    one.tmin = ray.tmin[lane];
+    one.tmax = ray.tmax[lane];
+    one.time = packet.time[lane];
+    one.mask = ray.mask[lane];
+    one.flags = ray.flags;
+    one.sbtOffset = ray.sbtOffset[lane];
+    one.sbtStride = ray.sbtStride[lane];
+    one.missIndex = ray.missIndex[lane];
+}
+
+/* Enters the closest hit of one lane. */
+template <class Scalar, int WORDS, int W> OXRT_INLINE void enterScalarHit(RayLanes<W>& ray, const Ray& one, int lane) {
+    auto& hit = ray.packet.hit;
+    hit.Ng_x[lane] = one.normal.x;
+    hit.Ng_y[lane] = one.normal.y;
+    hit.Ng_z[lane] = one.normal.z;
+    hit.u[lane] = one.u;
+    hit.v[lane] = one.v;
+    hit.primID[lane] = one.primitive;
+    hit.geomID[lane] = unsigned(one.geometry - holderOf(one).geometries);
+    const bool isNative = one.path ? one.path->native != nullptr : one.instance != nullptr;
+    hit.instID[0][lane] = isNative ? getInstanceIndex(one) : RTC_INVALID_GEOMETRY_ID;
+    ray.t.set(lane, one.t);
+    if constexpr (Scalar::hasIntersection)
+        if (isCustomGeometry(one)) {
+            ray.kind.set(lane, one.kind);
+            for (int i = 0; i < WORDS; ++i)
+                ray.attributes[i].set(lane, one.attributes[i]);
+        }
+}
+
+/* The masked lanes one after the other, with the scalar programs as callbacks; the lanes that hit something. */
+template <class Programs, class Flags, bool ANY, int W>
+Lanes<bool, W> traverseLanes(RayLanes<W>& ray, Lanes<bool, W> mask, typename Programs::Payload& payload) {
+    using Scalar = typename Programs::Scalar;
+    uint32_t hits = 0;
+    clearHits(ray);
+    if constexpr (!ANY && Scalar::hasIntersection)
+        for (int i = 0; i < Programs::attributeWords; ++i)
+            ray.attributes[i] = 0u;
+    eachLane(mask, [&](int lane) {
+        typename Scalar::Payload own;
+        if constexpr (Programs::callbacksUsePayload)
+            extractLane(own, payload, lane);
+        Ray one;
+        scalarRay(one, ray, &own, lane);
+        bool isHit;
+        if constexpr (ANY)
+            isHit = ray.paths ? traverseGraphAny<Scalar, Flags>(one, ray.paths[lane]) : traverseAny<Scalar, Flags>(one);
+        else
+            isHit = ray.paths ? traverseGraphClosest<Scalar, Flags>(one, ray.paths[lane]) : traverseClosest<Scalar, Flags>(one);
+        if constexpr (Programs::callbacksUsePayload)
+            insertLane(payload, own, lane);
+        if constexpr (Scalar::mayThrow)
+            if (one.thread->exceptionPending) {
+                takeExceptions(*ray.thread, Lanes<bool, W>::ofBits(1u << lane));
+                return;
+            }
+        if (isHit) {
+            hits |= 1u << lane;
+            if constexpr (!ANY)
+                enterScalarHit<Scalar, Programs::attributeWords>(ray, one, lane);
+        }
+    });
+    return Lanes<bool, W>::ofBits(hits);
+}
+
+/* ---- which query -------------------------------------------------------------------------------------------------------------- */
+
+/* What a traversal apart from the usual ones found. */
+template <class Payload, int W> struct FoundLanes {
+    Lanes<bool, W> hit;
+    Lanes<float, W> t;
+    Lanes<uint32_t, W> kind;
+    Lanes<uint32_t, W> attributes[8];
+    Payload payload;
+};
+
+/* Lane by lane, or through a graph. Ray and payload are the caller's copies. */
+template <class Programs, class Flags, bool ANY, int W>
+__attribute__((noinline)) FoundLanes<typename Programs::Payload, W> traverseApart(RayLanes<W>& ray, Lanes<bool, W> mask,
+                                                                                  typename Programs::Payload& payload, bool isCoherent) {
+    using Scalar = typename Programs::Scalar;
+    Lanes<bool, W> hit;
+    const uint32_t calling = OXRT_SCENE_HAS_SPHERES | OXRT_SCENE_HAS_CURVES | OXRT_SCENE_HAS_MICROMAPS |
+                             (Scalar::hasIntersection ? uint32_t(OXRT_SCENE_HAS_CUSTOM) : 0u);
+    bool isPacket = ray.paths && isCoherent && !(ray.root->needs & calling);
+    if constexpr (mayHaveCandidates<Scalar, Flags>)
+        isPacket = isPacket && !mayFilter<Scalar>(ray.flags, *ray.root);
+    if (isPacket)
+        hit = traverseGraphPacket<Scalar, ANY>(ray, mask, isCoherent);
+    else
+        hit = traverseLanes<Programs, Flags, ANY>(ray, mask, payload);
+    FoundLanes<typename Programs::Payload, W> found;
+    found.hit = hit;
+    if constexpr (Programs::callbacksUsePayload)
+        found.payload = payload;
+    if constexpr (!ANY)
+        found.t = ray.t;
+    if constexpr (!ANY && Scalar::hasIntersection) {
+        found.kind = ray.kind;
+        for (int i = 0; i < Programs::attributeWords; ++i)
+            found.attributes[i] = ray.attributes[i];
+    }
+    return found;
+}
+
+template <class Programs, class Flags, bool ANY, int W>
+OXRT_INLINE Lanes<bool, W> traverse(RayLanes<W>& ray, Lanes<bool, W> mask, typename Programs::Payload& payload, bool isCoherent) {
+    using Scalar = typename Programs::Scalar;
+    bool isApart = ray.paths != nullptr;
+    if constexpr (hasCallbacks<Scalar, Flags>) {
+        const uint32_t needs = ray.root->needs;
+        bool calls = Scalar::hasIntersection && (needs & OXRT_SCENE_HAS_CUSTOM);
+        if constexpr (mayHaveCandidates<Scalar, Flags>)
+            if (mayFilter<Scalar>(ray.flags, *ray.root)) {
+                calls = true;
+                const bool isDivergent = !isCoherent && !(needs & OXRT_SCENE_HAS_CUSTOM);
+                isApart = isApart || isDivergent || (needs & OXRT_SCENE_HAS_CURVES) || Scalar::usesMicromaps;
+            }
+        if (calls && !isApart)
+            return traverseCandidates<Programs, Flags, ANY>(ray, mask, payload, isCoherent);
+    }
+    if (!__builtin_expect(isApart, false))
+        return traversePacket<Flags, ANY>(ray, mask, isCoherent);
+    RayLanes<W> copy = ray;
+    typename Programs::Payload payloadCopy;
+    if constexpr (Programs::callbacksUsePayload)
+        payloadCopy = payload;
+    const auto found = traverseApart<Programs, Flags, ANY>(copy, mask, payloadCopy, isCoherent);
+    if constexpr (Programs::callbacksUsePayload)
+        payload = found.payload;
+    if constexpr (!ANY)
+        ray.t = found.t;
+    if constexpr (!ANY && Scalar::hasIntersection) {
+        ray.kind = found.kind;
+        for (int i = 0; i < Programs::attributeWords; ++i)
+            ray.attributes[i] = found.attributes[i];
+    }
+    return found.hit;
+}
+
+}  // namespace OXRT_ISA
+}  // namespace oxrt
+
+#endif
