@@ -80,6 +80,7 @@ struct ShadowPrograms : oxrt::NoPrograms {
 struct ShadowProgramsLanes : oxrt::NoLanePrograms {
     using Scalar = ShadowPrograms;
     using Payload = Wide<Shadow>;
+    static constexpr bool callbacksUsePayload = true;
     static void anyHit(Rays& trace, Mask mask, Payload& payload);
     static void miss(Rays& trace, Mask mask, Payload& payload);
 };
@@ -113,7 +114,7 @@ void anyhit_glass(oxrt::Ray& trace, Shadow& shadow, const Glass& glass) {
     }
 }
 
-#line 117 "pipeline.cpp"
+#line 118 "pipeline.cpp"
 void stop_if_dark_lanes([[maybe_unused]] Rays& trace, [[maybe_unused]] Mask mask, const Wide<Shadow>& shadow);
 
 #line 36 "shader.py"
@@ -188,7 +189,7 @@ void miss_dark_lanes([[maybe_unused]] Lanes& thread, [[maybe_unused]] Mask mask,
     oxrt::assign(mask, shadow.light, oxrt::float3(0.0f));
 }
 
-#line 192 "pipeline.cpp"
+#line 193 "pipeline.cpp"
 void ShadowPrograms::anyHit(oxrt::Ray& trace, Payload& payload, const OxrtRecordHeader& record) {
     if (record.programs[oxrt::SLOT_ANYHIT] == number::anyhit_glass)
         anyhit_glass(trace, payload, oxrt::recordData<Glass>(record));

@@ -89,8 +89,9 @@ struct DistancePrograms : oxrt::NoPrograms {
 struct DistanceProgramsLanes : oxrt::NoLanePrograms {
     using Scalar = DistancePrograms;
     using Payload = Wide<Distance>;
+    static constexpr int attributeWords = 3;
     static void closestHit(Rays& trace, Mask mask, Payload& payload);
-    static void intersection(Rays& trace, Mask mask, Payload& payload);
+    static void intersection(Rays& trace, Mask mask, Payload& payload, const OxrtRecordHeader& record);
 };
 
 #line 34 "shader.py"
@@ -128,9 +129,9 @@ template <class Programs> void intersection_sphere(oxrt::Ray& trace, const Spher
     }
 }
 
-#line 132 "pipeline.cpp"
+#line 133 "pipeline.cpp"
 template <class Programs> Wide<bool> report_root_lanes([[maybe_unused]] Rays& trace, [[maybe_unused]] Mask mask, Wide<float> t,
-        const Wide<oxrt::float3>& center);
+        const oxrt::float3& center);
 
 #line 40 "shader.py"
 void raygen_depth_lanes([[maybe_unused]] Lanes& thread, [[maybe_unused]] Mask mask) {
@@ -146,7 +147,7 @@ void raygen_depth_lanes([[maybe_unused]] Lanes& thread, [[maybe_unused]] Mask ma
 
 #line 34 "shader.py"
 template <class Programs> Wide<bool> report_root_lanes([[maybe_unused]] Rays& trace, [[maybe_unused]] Mask mask, Wide<float> t,
-        const Wide<oxrt::float3>& center) {
+        const oxrt::float3& center) {
     [[maybe_unused]] Lanes& thread = *trace.thread;
     Wide<bool> result{};
 #line 35 "shader.py"
@@ -165,8 +166,7 @@ template <class Programs> Wide<bool> report_root_lanes([[maybe_unused]] Rays& tr
 }
 
 #line 48 "shader.py"
-template <class Programs> void intersection_sphere_lanes([[maybe_unused]] Rays& trace, [[maybe_unused]] Mask mask,
-        const Wide<Sphere>& sphere) {
+template <class Programs> void intersection_sphere_lanes([[maybe_unused]] Rays& trace, [[maybe_unused]] Mask mask, const Sphere& sphere) {
     [[maybe_unused]] Lanes& thread = *trace.thread;
 #line 49 "shader.py"
     Wide<oxrt::float3> o = oxrt::getObjectRayOrigin(trace) - sphere.center;
@@ -222,10 +222,12 @@ void DistanceProgramsLanes::closestHit(Rays& trace, Mask mask, Payload& payload)
         closesthit_sphere_lanes(trace, own, payload, oxrt::getAttributes<SpherePoint>(trace));
 }
 
-void DistanceProgramsLanes::intersection(Rays& trace, Mask mask, Payload&) {
-    const Wide<int32_t> program = oxrt::recordPrograms(trace.records, mask, oxrt::SLOT_INTERSECTION);
-    if (const Mask own = mask & (program == int32_t(number::intersection_sphere)); oxrt::any(own))
-        intersection_sphere_lanes<DistanceProgramsLanes>(trace, own, oxrt::loadRecord<Sphere>(trace.records, own));
+void DistanceProgramsLanes::intersection(Rays& trace, Mask mask, Payload&, const OxrtRecordHeader& record) {
+    switch (record.programs[oxrt::SLOT_INTERSECTION]) {
+        case number::intersection_sphere: intersection_sphere_lanes<DistanceProgramsLanes>(trace, mask,
+                oxrt::recordData<Sphere>(record)); break;
+        default: break;
+    }
 }
 
 void run_raygen_depth(OxrtThread* thread, const OxrtTile* tile) {
