@@ -28,8 +28,12 @@ from optixc.ir.types import Struct, Void
 from optixc.ir.walk import expressions, statements
 from optixc.passes.callables import CallableSignature, callables_with, signatures_called
 from optixc.passes.features import Features
-from optixc.passes.uniformity import Clone, Key
+from optixc.passes.uniformity import COMMON_IN_INTERSECTION, Clone, Key
 
+_OF_RAY = frozenset(
+    """get_world_ray_origin get_world_ray_direction get_object_ray_origin get_object_ray_direction get_ray_tmin get_ray_tmax get_ray_time
+    get_ray_flags get_ray_visibility_mask""".split()
+)
 _ALSO_SCALAR = (ProgramKind.ANYHIT, ProgramKind.INTERSECTION)
 
 
@@ -142,6 +146,8 @@ class SpmdFile(PipelineFile):
                 self._writer.line("static constexpr bool usesPayloadWords = true;")
             if any(_uses_payload(self._pipeline, program) for program in (*programs.anyhit, *programs.intersection)):
                 self._writer.line("static constexpr bool callbacksUsePayload = true;")
+            if programs.intersection and (programs.anyhit or any(_reads_hit(self._pipeline, p) for p in programs.intersection)):
+                self._writer.line("static constexpr bool callbacksReadHit = true;")
             words = max((_reported_words(self._pipeline, program) for program in programs.intersection), default=0)
             if words:
                 self._writer.line(f"static constexpr int attributeWords = {words};")
@@ -311,6 +317,12 @@ def _present(programs: ProgramClass) -> list[tuple[ProgramKind, tuple[Function, 
         (ProgramKind.MISS, programs.miss),
     )
     return [(kind, functions) for kind, functions in kinds if functions]
+
+
+def _reads_hit(pipeline: Pipeline, program: Function) -> bool:
+    """Whether an intersection program asks for more than the ray and what its lanes share."""
+    asked = (e.name for f in reachable_functions(pipeline, program) for e in expressions(f.body) if isinstance(e, IntrinsicCall))
+    return any(INTRINSICS[name].state is State.RAY and name not in COMMON_IN_INTERSECTION and name not in _OF_RAY for name in asked)
 
 
 def _uses_payload(pipeline: Pipeline, program: Function) -> bool:

@@ -88,6 +88,9 @@ OXRT_INLINE NativeFloat8 maxNative(NativeFloat8 a, NativeFloat8 b) { return __bu
 OXRT_INLINE NativeDouble4 minNative(NativeDouble4 a, NativeDouble4 b) { return __builtin_ia32_minpd256(a, b); }
 OXRT_INLINE NativeDouble4 maxNative(NativeDouble4 a, NativeDouble4 b) { return __builtin_ia32_maxpd256(a, b); }
 
+/* Lane i is a[lanes[i]]. */
+OXRT_INLINE NativeFloat8 permuteNative(NativeFloat8 a, NativeInt8 lanes) { return __builtin_ia32_permvarsf256(a, lanes); }
+
 /* Truncation; what does not fit gives the lowest int. */
 OXRT_INLINE NativeInt8 truncateNative(NativeFloat8 a) { return __builtin_ia32_cvttps2dq256(a); }
 

@@ -124,6 +124,15 @@ OXRT_INLINE NativeDouble8 maxNative(NativeDouble8 a, NativeDouble8 b) {
 }
 #endif
 
+/* Lane i is a[lanes[i]]. */
+#ifdef __clang__
+OXRT_INLINE NativeFloat16 permuteNative(NativeFloat16 a, NativeInt16 lanes) { return __builtin_ia32_permvarsf512(a, lanes); }
+#else
+OXRT_INLINE NativeFloat16 permuteNative(NativeFloat16 a, NativeInt16 lanes) {
+    return __builtin_ia32_permvarsf512_mask(a, lanes, a, uint16_t(0xffff));
+}
+#endif
+
 /* Truncation; what does not fit gives the lowest int, or all bits for uint. */
 OXRT_INLINE NativeInt16 truncateNative(NativeFloat16 a) {
     return __builtin_ia32_cvttps2dq512_mask(a, NativeInt16{}, uint16_t(0xffff), CURRENT_ROUNDING);

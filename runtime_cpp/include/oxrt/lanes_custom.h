@@ -57,7 +57,8 @@ template <class Programs, int W> OXRT_INLINE void runIntersection(CandidateLanes
     if (!record)
         return;
     ray.records.common = record;
-    enterCommonHit(ray);
+    if constexpr (Programs::callbacksReadHit)
+        enterCommonHit(ray);
     ray.active = mask;
     ray.t = ray.closest;
     ray.ended = false;
@@ -101,11 +102,19 @@ OXRT_INLINE void runIntersections(CandidateLanes<W>& ray, Lanes<bool, W> mask, u
             return;
     }
     const uint32_t base = common.instance ? common.instance->sbtOffset : 0;
-    if (ray.hasCommonRecord)
-        runIntersection<Programs>(ray, mask, base + (geometry.recordBase + record) * ray.commonStride + ray.commonOffset);
-    else {
-        const Lanes<uint32_t, W> index = base + (geometry.recordBase + record) * ray.sbtStride + ray.sbtOffset;
-        eachValue(mask, index, [&ray](uint32_t own, Lanes<bool, W> equal) { runIntersection<Programs>(ray, equal, own); });
+    // one record after the other: one for all lanes, but for SBT offsets that differ between them. The program is inlined once
+    Lanes<uint32_t, W> index;
+    if (!ray.hasCommonRecord)
+        index = base + (geometry.recordBase + record) * ray.sbtStride + ray.sbtOffset;
+    uint32_t own = base + (geometry.recordBase + record) * ray.commonStride + ray.commonOffset;
+    for (Lanes<bool, W> rest = mask; any(rest);) {
+        Lanes<bool, W> equal = rest;
+        if (!ray.hasCommonRecord) {
+            own = index[firstLane(rest)];
+            equal = rest & (index == own);
+        }
+        runIntersection<Programs>(ray, equal, own);
+        rest = without(rest, equal);
     }
 }
 

@@ -196,7 +196,7 @@ __attribute__((noinline)) Lanes<bool, W> traverseGraphPacket(RayLanes<W>& ray, L
     walk.path.size = 0;
     walk.committed = ray.paths;
     walk.time = packetLanes<W>(ray.packet.ray.time);
-    walk.mask = ray.mask;
+    walk.mask = packetLanes<W>(ray.packet.ray.mask);
     const Wide<float3, W> origin = getWorldRayOrigin(ray);
     const Wide<float3, W> direction = getWorldRayDirection(ray);
     if constexpr (ANY) {

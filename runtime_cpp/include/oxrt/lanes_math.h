@@ -31,6 +31,14 @@ template <class T, int W> requires isFloating<T> OXRT_INLINE Lanes<T, W> multipl
         return Lanes<T, W>(fmaNative(a.v, b.v, c.v), fmaNative(a.w, b.w, c.w));
 }
 
+/* The value of one lane in all of them; quicker than to read it, which goes through memory. */
+template <int W> OXRT_INLINE Lanes<float, W> spreadLane(Lanes<float, W> a, int lane) {
+    return Lanes<float, W>(permuteNative(a.v, Lanes<int32_t, W>(lane).v));
+}
+template <int W> OXRT_INLINE Vector<Lanes<float, W>, 3> spreadLane(const Vector<Lanes<float, W>, 3>& v, int lane) {
+    return {spreadLane(v.x, lane), spreadLane(v.y, lane), spreadLane(v.z, lane)};
+}
+
 template <class T> struct SignBits;
 template <> struct SignBits<float> {
     using Type = uint32_t;

@@ -22,10 +22,10 @@ OXRT_INLINE bool areCoherent(Lanes<bool, W> mask, const Wide<float3, W>& origin,
     if (__builtin_popcount(mask.bits()) < W / 2)
         return false;
     const int lane = firstLane(mask);
-    const Wide<float3, W> apart = origin - float3(origin.x[lane], origin.y[lane], origin.z[lane]);
-    const float3 first(direction.x[lane], direction.y[lane], direction.z[lane]);
-    const float reach = 0.25f * tmax[lane];
-    const float length2 = dot(first, first);
+    const Wide<float3, W> apart = origin - spreadLane(origin, lane);
+    const Wide<float3, W> first = spreadLane(direction, lane);
+    const Lanes<float, W> reach = 0.25f * spreadLane(tmax, lane);
+    const Lanes<float, W> length2 = dot(first, first);
     const Lanes<float, W> cosine = dot(direction, first);
     const Lanes<bool, W> isNear = dot(apart, apart) <= reach * reach * length2;
     return none(mask & !(isNear & (cosine * abs(cosine) > dot(direction, direction) * (0.25f * length2))));
@@ -71,9 +71,6 @@ OXRT_INLINE void beginCandidates(CandidateLanes<W>& candidates, const RayLanes<W
     candidates.root = ray.root;
     candidates.tmin = ray.tmin;
     candidates.tmax = ray.tmax;
-    candidates.mask = ray.mask;
-    candidates.sbtOffset = ray.sbtOffset;
-    candidates.sbtStride = ray.sbtStride;
     candidates.flags = ray.flags;
     candidates.ended = false;
     candidates.isTerminated = false;
@@ -83,6 +80,10 @@ OXRT_INLINE void beginCandidates(CandidateLanes<W>& candidates, const RayLanes<W
     candidates.commonOffset = ray.sbtOffset[0];
     candidates.commonStride = ray.sbtStride[0];
     candidates.hasCommonRecord = none((ray.sbtOffset != candidates.commonOffset) | (ray.sbtStride != candidates.commonStride));
+    if (Programs::Scalar::hasAnyHit || !candidates.hasCommonRecord) {
+        candidates.sbtOffset = ray.sbtOffset;
+        candidates.sbtStride = ray.sbtStride;
+    }
     candidates.isCoherent = isCoherent;
     if (Programs::Scalar::hasIntersection && isCoherent)
         candidates.inverseDirection = inverseOf(getWorldRayDirection(ray));
@@ -102,11 +103,15 @@ template <class PacketRay> OXRT_INLINE void copyRays(PacketRay& to, const Packet
     __builtin_memcpy(to.dir_y, from.dir_y, sizeof(from.dir_y));
     __builtin_memcpy(to.dir_z, from.dir_z, sizeof(from.dir_z));
     __builtin_memcpy(to.time, from.time, sizeof(from.time));
+    __builtin_memcpy(to.mask, from.mask, sizeof(from.mask));
 }
 
 /* Embree drops lanes whose interval is empty or one number before it calls back; reports may be accepted in one number. */
-template <int W> OXRT_INLINE void openEmptyIntervals(CandidateLanes<W>& candidates, typename CandidateLanes<W>::PacketRay& packet) {
-    const Lanes<bool, W> isEmpty = packetLanes<W>(packet.tnear) >= packetLanes<W>(packet.tfar);
+template <int W>
+OXRT_INLINE void openEmptyIntervals(CandidateLanes<W>& candidates, typename CandidateLanes<W>::PacketRay& packet, Lanes<bool, W> mask) {
+    const Lanes<bool, W> isEmpty = mask & (packetLanes<W>(packet.tnear) >= packetLanes<W>(packet.tfar));
+    if (none(isEmpty))
+        return;
     setPacket(packet.tnear, select(isEmpty, candidates.tmin, packetLanes<W>(packet.tnear)));
     setPacket(packet.tfar, select(isEmpty, nextUp(candidates.tmax), packetLanes<W>(packet.tfar)));
     candidates.closestInEmbree = packetLanes<W>(packet.tfar);
@@ -129,7 +134,7 @@ __attribute__((noinline)) void queryCandidates(CandidateLanes<W>& candidates, ty
             flags |= RTC_RAY_QUERY_FLAG_INVOKE_ARGUMENT_FILTER;
     }
     if constexpr (Scalar::hasIntersection)
-        openEmptyIntervals(candidates, packet.ray);
+        openEmptyIntervals(candidates, packet.ray, mask);
     if constexpr (ANY) {
         RTCOccludedArguments arguments = {flags, RTC_FEATURE_FLAG_ALL, &query.context, filter, nullptr, 0.0f};
         if constexpr (Scalar::hasIntersection)
@@ -192,7 +197,7 @@ template <int W> OXRT_INLINE void scalarRay(Ray& one, const RayLanes<W>& ray, vo
     one.tmin = ray.tmin[lane];
     one.tmax = ray.tmax[lane];
     one.time = packet.time[lane];
-    one.mask = ray.mask[lane];
+    one.mask = packet.mask[lane];
     one.flags = ray.flags;
     one.sbtOffset = ray.sbtOffset[lane];
     one.sbtStride = ray.sbtStride[lane];

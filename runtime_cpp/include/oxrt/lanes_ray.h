@@ -92,7 +92,6 @@ template <int W> struct RayLanes {
     GraphPath* paths = nullptr; /* each lane's way to its hit in scenes that kernels walk through themselves, else null */
     Lanes<float, W> tmin, tmax;
     Lanes<float, W> t; /* what getRayTmax gives */
-    Lanes<uint32_t, W> mask;
     Lanes<uint32_t, W> sbtOffset, sbtStride, missIndex;
     uint32_t flags;
     Lanes<bool, W> active; /* the lanes that hit something, or missed */
@@ -130,7 +129,9 @@ template <int W> OXRT_INLINE Lanes<float, W> getRayTmin(const RayLanes<W>& ray) 
 template <int W> OXRT_INLINE Lanes<float, W> getRayTmax(const RayLanes<W>& ray) { return ray.t; }
 template <int W> OXRT_INLINE Lanes<float, W> getRayTime(const RayLanes<W>& ray) { return packetLanes<W>(ray.packet.ray.time); }
 template <int W> OXRT_INLINE Lanes<uint32_t, W> getRayFlags(const RayLanes<W>& ray) { return ray.flags; }
-template <int W> OXRT_INLINE Lanes<uint32_t, W> getRayVisibilityMask(const RayLanes<W>& ray) { return ray.mask; }
+template <int W> OXRT_INLINE Lanes<uint32_t, W> getRayVisibilityMask(const RayLanes<W>& ray) {
+    return packetLanes<W>(ray.packet.ray.mask);
+}
 
 /* ---- neighbours of floats: see nextUp of scalars ---------------------------------------------------------------------------- */
 

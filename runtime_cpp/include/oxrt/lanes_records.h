@@ -13,6 +13,7 @@ struct NoLanePrograms {
     using Payload = NoPayload;
     static constexpr bool usesPayloadWords = false;
     static constexpr bool callbacksUsePayload = false; /* any-hit and intersection programs do */
+    static constexpr bool callbacksReadHit = false;    /* ... in each lane: more than the ray and what an intersection's lanes share */
     static constexpr int attributeWords = 0;           /* the most that an intersection program reports */
 };
 

@@ -113,8 +113,7 @@ OXRT_INLINE void trace(LanesThread<W>& thread, Lanes<bool, W> mask, uint64_t han
     setPacket(packet.dir_z, direction.z);
     setPacket(packet.time, Scalar::usesTime ? time : Lanes<float, W>(0.0f));
     setPacket(packet.tfar, nextDown(tmax));
-    ray.mask = visibility & 0xFFu;
-    setPacket(packet.mask, ray.mask);
+    setPacket(packet.mask, visibility & 0xFFu);
     setPacket<W>(packet.flags, 0u);
     ray.tmin = tmin;
     ray.tmax = tmax;
@@ -124,7 +123,10 @@ OXRT_INLINE void trace(LanesThread<W>& thread, Lanes<bool, W> mask, uint64_t han
     ray.missIndex = missIndex;
     if constexpr (Scalar::isValidated)
         checkRays(ray, mask, handle, place);
-    traceNow<Programs, Flags>(ray, mask, payload, areCoherent(mask, origin, direction, tmax), place);
+    // coherent packets offer a custom primitive to lanes that miss its box, which costs more than they save
+    const bool callsIntersection = Scalar::hasIntersection && ray.root && (ray.root->needs & OXRT_SCENE_HAS_CUSTOM);
+    const bool isCoherent = !callsIntersection && areCoherent(mask, origin, direction, tmax);
+    traceNow<Programs, Flags>(ray, mask, payload, isCoherent, place);
     leaveTrace<Scalar>(*thread.thread);
 }
 
