@@ -177,6 +177,8 @@ class DeviceContext(Context):
                 raise InvalidValueError(f"pipeline_create takes program groups, not {type(group).__name__}")
         if not any(group.kind is ProgramGroupKind.RAYGEN for group in groups):
             raise InvalidValueError("a pipeline needs a raygen group: nothing else can begin a launch")
+        if options is not None and not isinstance(options, PipelineCompileOptions):
+            raise InvalidValueError(f"options takes an ox.PipelineCompileOptions, not {type(options).__name__}")
         used = list(dict.fromkeys(program for group in groups for program in group.programs.values()))
         modules = list({id(program.module): program.module for program in used}.values())
         units = list(dict.fromkeys(module.unit for module in modules))

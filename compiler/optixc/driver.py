@@ -22,7 +22,16 @@ from optixc.cache import Cache, Json, digest
 from optixc.codegen.cpp_types import payload_words
 from optixc.codegen.emit import emit as emit_cpp
 from optixc.codegen.program_classes import constant, payload_of, traces_of
-from optixc.errors import FileIoError, InvalidOperationError, InvalidValueError, NotSupportedError, PipelineLinkError
+from optixc.codegen.word_limits import first_excess
+from optixc.errors import (
+    FileIoError,
+    InvalidAttributeAccessError,
+    InvalidOperationError,
+    InvalidPayloadAccessError,
+    InvalidValueError,
+    NotSupportedError,
+    PipelineLinkError,
+)
 from optixc.frontend.compile import FrontendResult, compile_file, compile_functions
 from optixc.installation import include_folder
 from optixc.ir import layout, nodes
@@ -151,6 +160,9 @@ def emit(modules: Sequence[nodes.Module], names: Sequence[str], options: Compile
         linked = link(modules, names, pipeline_options(options, params))
     except LinkError as error:
         raise PipelineLinkError(str(error)) from error
+    excess = first_excess(linked, options.pipeline.num_payload_values, options.pipeline.num_attribute_values)
+    if excess is not None:
+        raise (InvalidPayloadAccessError if excess[0] == "payload" else InvalidAttributeAccessError)(excess[1])
     pipeline = passes.run(linked, print_after=print_after)
     found = features(pipeline)
     return Emitted(emit_cpp(pipeline, found), pipeline, found)
@@ -209,6 +221,13 @@ def _describe_program(program: nodes.Function) -> Json:
     }
 
 
+def _describe_place(function: nodes.Function) -> Json:
+    """The lines of a program or helper, so that a fault can name it."""
+    span = function.span
+    last = max((statement.span.end_line for statement in statements(function.body)), default=span.end_line)
+    return {"name": function.source_name, "path": span.path, "first": span.line, "last": last}
+
+
 def _describe_trace(trace: nodes.Trace) -> Json:
     """What of a trace decides the records that it reaches; None for what is no constant."""
     sbt_offset, sbt_stride, miss = (constant(argument) for argument in trace.arguments[8:11])
@@ -254,6 +273,7 @@ def _describe(emitted: Emitted, options: CompileOptions, compiler: toolchain.Com
         "compiler": str(compiler),
         "programs": [program.name for program in emitted.pipeline.programs],
         "features": {feature.name: feature.describe() for feature in emitted.features.items},
+        "functions": [_describe_place(function) for function in (*emitted.pipeline.programs, *emitted.pipeline.helpers)],
         "traces": [str(use) for use in map(_trace_text, uses)],
         "trace_uses": uses,
         "calls_callables": bool(signatures_called(emitted.pipeline)),

@@ -17,6 +17,8 @@ class OptixError(Exception):
     launch_index: tuple[int, ...] | None = None
     path: str | None = None
     line: int | None = None
+    program: str | None = None
+    """The program or helper that holds this line."""
 
 
 class InvalidValueError(OptixError, ValueError):
@@ -194,6 +196,33 @@ def from_code(code: int) -> type[OptixError]:
     return _BY_CODE.get(code, OptixError)
 
 
+_CODES = frozenset(map(int, Result))
+_UNKNOWN_CODE = "Unrecognized OptixResult code"
+_TEXTS = {
+    Result.SUCCESS: "Success",
+    Result.ERROR_HOST_OUT_OF_MEMORY: "Host is out of memory",
+    Result.ERROR_FILE_IO_ERROR: "File I/O error",
+    Result.ERROR_NOT_SUPPORTED: "Feature is not supported",
+    Result.ERROR_UNSUPPORTED_ABI_VERSION: "Unsupported ABI version",
+    Result.ERROR_CUDA_NOT_INITIALIZED: "CUDA is not initialized",
+    Result.ERROR_CUDA_ERROR: "CUDA error",
+    Result.ERROR_PAYLOAD_TYPE_ID_INVALID: "Payload type ID is invalid",
+}
+
+
+def get_error_name(result: int) -> str:
+    """OptiX's optixGetErrorName: the enumerator of a result code, e.g. "OPTIX_ERROR_INVALID_VALUE"."""
+    return f"OPTIX_{Result(result).name}" if result in _CODES else _UNKNOWN_CODE
+
+
+def get_error_string(result: int) -> str:
+    """OptiX's optixGetErrorString: a few words about a result code, e.g. "Invalid value"."""
+    if result not in _CODES:
+        return _UNKNOWN_CODE
+    code = Result(result)
+    return _TEXTS.get(code, code.name.removeprefix("ERROR_").replace("_", " ").capitalize())
+
+
 __all__ = [
     "CudaError",
     "CudaNotInitializedError",
@@ -238,4 +267,6 @@ __all__ = [
     "UnknownError",
     "UnsupportedAbiVersionError",
     "ValidationFailureError",
+    "get_error_name",
+    "get_error_string",
 ]

@@ -21,25 +21,27 @@ BoundValue = bool | int | float | tuple[bool | int | float, ...]
 
 @dataclass(frozen=True)
 class PipelineCompileOptions:
-    """OptiX's OptixPipelineCompileOptions. Payload and attribute counts are taken from the shader's classes; if given they are limits.
+    """OptiX's OptixPipelineCompileOptions. Payload and attribute counts are taken from the shader's classes; if given they are limits,
+    except that 0 payload values means that there is none, and that fewer than 2 attribute values count as 2.
 
     `allow_clustered_geometry` is accepted and has no effect: there are no clusters on a CPU.
     """
 
     uses_motion_blur: bool = False
     traversable_graph_flags: TraversableGraphFlags = TraversableGraphFlags.ANY
-    num_payload_values: int = 0
-    num_attribute_values: int = 2
+    num_payload_values: int | None = None
+    num_attribute_values: int | None = None
     exception_flags: ExceptionFlags = ExceptionFlags.NONE
     uses_primitive_type_flags: PrimitiveTypeFlags | int = 0
     allow_opacity_micromaps: bool = False
     allow_clustered_geometry: bool = False
 
     def __post_init__(self) -> None:
-        limits = (("num_payload_values", 32), ("num_attribute_values", 8), ("exception_flags", 7), ("traversable_graph_flags", 3))
-        for name, limit in limits:
+        counts = (("num_payload_values", 32), ("num_attribute_values", 8))
+        for name, limit in (*counts, ("exception_flags", 7), ("traversable_graph_flags", 3)):
             value = getattr(self, name)
-            if not isinstance(value, int) or not 0 <= value <= limit:
+            may_be_absent = value is None and (name, limit) in counts
+            if not may_be_absent and (not isinstance(value, int) or not 0 <= value <= limit):
                 raise InvalidValueError(f"{name} must be 0 to {limit}, not {value!r}")
         for name in ("uses_motion_blur", "allow_opacity_micromaps", "allow_clustered_geometry"):
             if getattr(self, name) not in (False, True):

@@ -6,6 +6,7 @@
 #include "texture.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <cstring>
 #include <pthread.h>
@@ -168,9 +169,12 @@ void Launch::recordFault(const OxrtThread& thread, std::int32_t code, const char
     faultReport.line = line;
     std::snprintf(faultReport.path, sizeof faultReport.path, "%s", path ? path : "");
     auto length = static_cast<std::size_t>(std::snprintf(faultReport.message, sizeof faultReport.message, "%s", message ? message : ""));
-    for (std::uint32_t i = 0; i < valueCount && length < sizeof faultReport.message; ++i)
-        length += static_cast<std::size_t>(std::snprintf(faultReport.message + length, sizeof faultReport.message - length, "%s%.9g%s",
-                                                         i == 0 ? " (" : ", ", values[i], i + 1 == valueCount ? ")" : ""));
+    for (std::uint32_t i = 0; i < valueCount && length < sizeof faultReport.message; ++i) {
+        // Indices with all their digits, other numbers as float32 needs them.
+        const bool isIndex = std::abs(values[i]) < 0x1p53 && values[i] == std::trunc(values[i]);
+        length += static_cast<std::size_t>(std::snprintf(faultReport.message + length, sizeof faultReport.message - length, "%s%.*g%s",
+                                                         i == 0 ? " (" : ", ", isIndex ? 16 : 9, values[i], i + 1 == valueCount ? ")" : ""));
+    }
     std::atomic_ref(cancelWord).store(1);
 }
 

@@ -51,19 +51,20 @@ class Dispatch:
         with self._writer.block(f"struct {name} : oxrt::NoPrograms", tail="};"):
             self._writer.line(f"using Payload = {payload};")
             for constant, value in self._constants(programs):
-                type_ = "uint32_t" if constant == "maxTraceDepth" else "bool"
+                type_ = "bool" if value == "true" else "uint32_t"
                 self._writer.line(f"static constexpr {type_} {constant} = {value};")
-            for kind, _ in _present(programs):
+            for kind, _ in programs.present:
                 self._writer.line(f"static void {FUNCTIONS[kind]}(oxrt::Ray& trace, Payload& payload, const OxrtRecordHeader& record);")
         self._writer.line()
 
     def _constants(self, programs: ProgramClass) -> list[tuple[str, str]]:
         options = self._pipeline.options
+        kinds = [kind for kind, _ in programs.present]
         constants = [
-            ("hasClosestHit", bool(programs.closesthit)),
-            ("hasAnyHit", bool(programs.anyhit)),
-            ("hasIntersection", bool(programs.intersection)),
-            ("hasMiss", bool(programs.miss)),
+            ("hasClosestHit", ProgramKind.CLOSESTHIT in kinds),
+            ("hasAnyHit", ProgramKind.ANYHIT in kinds),
+            ("hasIntersection", ProgramKind.INTERSECTION in kinds),
+            ("hasMiss", ProgramKind.MISS in kinds),
             ("mayThrow", programs.may_throw or ((programs.depth_throws or programs.overflow_throws) and programs.counts_depth)),
             ("countsDepth", programs.counts_depth),
             ("depthThrows", programs.counts_depth and programs.depth_throws),
@@ -74,12 +75,16 @@ class Dispatch:
             ("isValidated", options.validation),
         ]
         texts = [(name, "true") for name, is_on in constants if is_on]
-        return [*texts, ("maxTraceDepth", str(options.max_trace_depth))] if programs.counts_depth else texts
+        if programs.counts_depth:
+            texts.append(("maxTraceDepth", str(options.max_trace_depth)))
+        if options.validation and options.traversable_graph_flags:
+            texts.append(("graphFlags", str(options.traversable_graph_flags)))
+        return texts
 
     def define_class(self, programs: ProgramClass) -> None:
         """The dispatchers of one payload class."""
         owner = self._signatures.program_class(programs.payload)
-        for kind, functions in _present(programs):
+        for kind, functions in programs.present:
             calls = [(function, self._program_call(function, programs.payload, owner)) for function in functions]
             uses_ray = any("trace" in call.replace("oxrt::", "") for _, call in calls)
             uses_payload = any("payload" in call for _, call in calls)
@@ -185,13 +190,3 @@ class Dispatch:
                 arguments.append(f"a{position}")
                 position += 1
         return arguments
-
-
-def _present(programs: ProgramClass) -> list[tuple[ProgramKind, tuple[Function, ...]]]:
-    kinds = (
-        (ProgramKind.CLOSESTHIT, programs.closesthit),
-        (ProgramKind.ANYHIT, programs.anyhit),
-        (ProgramKind.INTERSECTION, programs.intersection),
-        (ProgramKind.MISS, programs.miss),
-    )
-    return [(kind, functions) for kind, functions in kinds if functions]

@@ -92,7 +92,8 @@ class SpmdFile(PipelineFile):
         for clone in order:
             LaneFunction(self._writer, clone, self._wide, self._clones, self._signatures, options).write()
         for programs in self._classes.values():
-            self._dispatch.define_class(replace(programs, closesthit=(), miss=()))
+            noticed = programs.noticed - {ProgramKind.CLOSESTHIT, ProgramKind.MISS}
+            self._dispatch.define_class(replace(programs, closesthit=(), miss=(), noticed=noticed))
             self._define_lane_class(programs)
         for signature in signatures_called(self._pipeline):
             self._define_callable(signature)
@@ -142,7 +143,7 @@ class SpmdFile(PipelineFile):
         with self._writer.block(f"struct {name}Lanes : oxrt::NoLanePrograms", tail="};"):
             self._writer.line(f"using Scalar = {name};")
             self._writer.line(f"using Payload = {payload};")
-            if any(_uses_payload_words(self._pipeline, program) for _, functions in _present(programs) for program in functions):
+            if any(_uses_payload_words(self._pipeline, program) for _, functions in programs.present for program in functions):
                 self._writer.line("static constexpr bool usesPayloadWords = true;")
             if any(_uses_payload(self._pipeline, program) for program in (*programs.anyhit, *programs.intersection)):
                 self._writer.line("static constexpr bool callbacksUsePayload = true;")
@@ -151,14 +152,14 @@ class SpmdFile(PipelineFile):
             words = max((_reported_words(self._pipeline, program) for program in programs.intersection), default=0)
             if words:
                 self._writer.line(f"static constexpr int attributeWords = {words};")
-            for kind, _ in _present(programs):
+            for kind, _ in programs.present:
                 record = ", const OxrtRecordHeader& record" if kind is ProgramKind.INTERSECTION else ""
                 self._writer.line(f"static void {FUNCTIONS[kind]}(Rays& trace, Mask mask, Payload& payload{record});")
         self._writer.line()
 
     def _define_lane_class(self, programs: ProgramClass) -> None:
         owner = f"{self._signatures.program_class(programs.payload)}Lanes"
-        for kind, functions in _present(programs):
+        for kind, functions in programs.present:
             mask = "mask" if kind is ProgramKind.INTERSECTION else "own"
             calls = [(function, self._lane_call(function, programs.payload, owner, mask)) for function in functions]
             payload = "Payload& payload" if any("payload" in call for _, call in calls) else "Payload&"
@@ -190,8 +191,9 @@ class SpmdFile(PipelineFile):
                 with self._writer.indented():
                     self._writer.line(f"{call};")
             if self._pipeline.options.validation:
-                known = " | ".join(f"(program == int32_t({self._dispatch.number(function)}))" for function, _ in calls)
-                self._writer.line(f"oxrt::payloadMismatch(trace, mask & !({known} | (program == int32_t(OXRT_NO_PROGRAM))));")
+                numbers = [*(self._dispatch.number(function) for function, _ in calls), "OXRT_NO_PROGRAM"]
+                known = " | ".join(f"(program == int32_t({number}))" for number in numbers)
+                self._writer.line(f"oxrt::payloadMismatch(trace, mask & !({known}));")
 
     def _lane_call(self, program: Function, payload: Struct | None, owner: str, mask: str) -> str:
         clone = self._clones.analysis.program(program)
@@ -307,16 +309,6 @@ class SpmdFile(PipelineFile):
         lanes = self._pipeline.options.lanes
         isa = "OXRT_ISA_X86_64_V4" if lanes == 16 else "OXRT_ISA_X86_64_V3"
         return f"{{{isa}, {lanes}, programs, {len(self._pipeline.programs)}}}"
-
-
-def _present(programs: ProgramClass) -> list[tuple[ProgramKind, tuple[Function, ...]]]:
-    kinds = (
-        (ProgramKind.CLOSESTHIT, programs.closesthit),
-        (ProgramKind.ANYHIT, programs.anyhit),
-        (ProgramKind.INTERSECTION, programs.intersection),
-        (ProgramKind.MISS, programs.miss),
-    )
-    return [(kind, functions) for kind, functions in kinds if functions]
 
 
 def _reads_hit(pipeline: Pipeline, program: Function) -> bool:

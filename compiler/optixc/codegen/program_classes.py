@@ -34,18 +34,33 @@ _WORD_PREFIXES = ("get_payload_", "set_payload_")
 
 @dataclass(frozen=True)
 class ProgramClass:
-    """What traces with `payload` (None: without one) can run, in the pipeline's order of programs."""
+    """What traces with `payload` (None: without one) can run, in the pipeline's order of programs.
+
+    `noticed`: kinds of programs that have a dispatcher even without programs, so that a record of another payload is noticed.
+    """
 
     payload: Struct | None
     closesthit: tuple[Function, ...]
     anyhit: tuple[Function, ...]
     intersection: tuple[Function, ...]
     miss: tuple[Function, ...]
+    noticed: frozenset[ProgramKind | None]
     may_throw: bool
     counts_depth: bool
     depth_throws: bool
     checks_stack: bool
     overflow_throws: bool
+
+    @property
+    def present(self) -> list[tuple[ProgramKind, tuple[Function, ...]]]:
+        """The kinds that have a dispatcher, with their programs."""
+        kinds = (
+            (ProgramKind.CLOSESTHIT, self.closesthit),
+            (ProgramKind.ANYHIT, self.anyhit),
+            (ProgramKind.INTERSECTION, self.intersection),
+            (ProgramKind.MISS, self.miss),
+        )
+        return [(kind, functions) for kind, functions in kinds if functions or kind in self.noticed]
 
 
 def traces_of(pipeline: Pipeline) -> Iterator[tuple[Function, Trace]]:
@@ -78,6 +93,7 @@ def _program_class(pipeline: Pipeline, needs: dict[str, Needs], payload: Struct 
         anyhit=anyhit,
         intersection=intersection,
         miss=miss,
+        noticed=frozenset(program.kind for program in pipeline.programs if pipeline.options.validation),
         may_throw=any(needs[program.name].throws for program in programs),
         counts_depth=counts,
         depth_throws=bool(pipeline.options.exception_flags & EXCEPTION_FLAG_TRACE_DEPTH),

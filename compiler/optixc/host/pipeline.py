@@ -42,6 +42,7 @@ class PipelineReport:
     is_any_graph: bool = True
     trace_uses: tuple[dict[str, Any], ...] = ()
     calls_callables: bool = False
+    functions: tuple[dict[str, Any], ...] = ()
 
     def __str__(self) -> str:
         source = "from the cache" if self.cache_hit else f"compiled in {self.compile_seconds:.2f} s"
@@ -56,6 +57,11 @@ class PipelineReport:
             *(f"ignored on a CPU: {one}" for one in self.ignored),
         ]
         return "\n".join(lines)
+
+    def function_at(self, path: str, line: int) -> str | None:
+        """The program or helper that a line of a shader file belongs to."""
+        around = [one for one in self.functions if one["path"] == path and one["first"] <= line <= one["last"]]
+        return min(around, key=lambda one: one["last"] - one["first"])["name"] if around else None
 
 
 class Pipeline:
@@ -244,11 +250,13 @@ class Pipeline:
         ffi = library.ffi()
         report = ffi.new("OxrtLaunchReport*")
         self._lib.oxrtPipelineGetLaunchReport(self._pipeline, report)
-        error = from_code(result)(message)
-        if report.faultCode:
-            error.fault_code = int(report.faultCode)
-            error.launch_index = tuple(int(index) for index in report.index)
-            error.path, error.line = ffi.string(report.path).decode(), int(report.line)
+        if not report.faultCode:
+            return from_code(result)(message)
+        path, line = ffi.string(report.path).decode(), int(report.line)
+        program = self._report.function_at(path, line)
+        error = from_code(result)(message.replace(f"{path}:{line}: ", f"{path}:{line}: {program}, ", 1) if program else message)
+        error.fault_code, error.program, error.path, error.line = int(report.faultCode), program, path, line
+        error.launch_index = tuple(int(index) for index in report.index)
         return error
 
     def _check_params(self, params: Any) -> None:

@@ -161,8 +161,14 @@ __attribute__((noinline, cold, unused)) static void callableMismatch(OxrtThread&
     fault(thread, OXRT_FAULT_CALLABLE_ARGUMENTS, "the callable takes other arguments or gives another result than the call", place);
 }
 
+/* Where the trace stands that this thread is at, for faults of what runs below it; kept in validation only. */
+inline Place& placeOfTrace() {
+    static thread_local Place place = {nullptr, 0};
+    return place;
+}
+
 __attribute__((noinline, cold, unused)) static void payloadMismatch(OxrtThread& thread) {
-    fault(thread, OXRT_FAULT_PAYLOAD_MISMATCH, "the record's program takes another payload than the trace carries", {nullptr, 0});
+    fault(thread, OXRT_FAULT_PAYLOAD_MISMATCH, "the record's program takes another payload than the trace carries", placeOfTrace());
 }
 
 /* ---- launch indices ------------------------------------------------------------------------------------------------------------- */

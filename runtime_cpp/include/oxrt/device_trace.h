@@ -79,9 +79,31 @@ OXRT_INLINE bool isValidRay(const Ray& ray) {
     return isFiniteVector(ray.origin) && isDirectionNumber && ray.tmin >= 0.0f && ray.tmin < __builtin_inff() && ray.tmax == ray.tmax;
 }
 
+/* Whether the pipeline was made for graphs as deep as this one. */
+template <class Programs> OXRT_INLINE bool isGraphAllowed(const OxrtTraversableView& root) {
+    const bool isGas = root.type == OXRT_TRAVERSABLE_GAS;
+    const bool isSingleLevel = root.type == OXRT_TRAVERSABLE_IAS && !(root.needs & OXRT_SCENE_MULTI_LEVEL);
+    return Programs::graphFlags == 0 || (isGas && (Programs::graphFlags & 1)) || (isSingleLevel && (Programs::graphFlags & 2));
+}
+
+/* What validation has to say about a ray and what it is to be traced through. */
+template <class Programs> __attribute__((noinline)) void checkRay(const Ray& ray, uint64_t handle, Place place) {
+    OxrtThread& thread = *ray.thread;
+    if (!isValidRay(ray))
+        faultWithValues(thread, OXRT_FAULT_INVALID_RAY, "invalid ray (origin, direction, tmin, tmax)", place, ray.origin.x, ray.origin.y,
+                        ray.origin.z, ray.direction.x, ray.direction.y, ray.direction.z, ray.tmin, ray.tmax);
+    else if (!ray.root && handle != 0)
+        fault(thread, OXRT_FAULT_INVALID_TRAVERSABLE, "the handle names no traversable of this context, or one that was destroyed", place);
+    else if (ray.root && !isGraphAllowed<Programs>(*ray.root))
+        fault(thread, ray.root->type == OXRT_TRAVERSABLE_GAS ? OXRT_FAULT_SINGLE_LEVEL_GAS : OXRT_FAULT_INVALID_TRAVERSABLE,
+              "the traversable is of a kind that the pipeline's traversable_graph_flags leave out", place);
+}
+
 template <class Programs> OXRT_INLINE void runMiss(Ray& ray, typename Programs::Payload& payload, Place place) {
     const OxrtLaunch& launch = *ray.thread->launch;
     ray.t = ray.tmax;
+    if constexpr (Programs::isValidated)
+        placeOfTrace() = place;
     ray.record = findRecord(launch, launch.missRecords, launch.missStride, launch.missCount, ray.missIndex);
     if (ray.record)
         Programs::miss(ray, payload, *ray.record);
@@ -90,6 +112,8 @@ template <class Programs> OXRT_INLINE void runMiss(Ray& ray, typename Programs::
 }
 
 template <class Programs> OXRT_INLINE void runClosestHit(Ray& ray, typename Programs::Payload& payload, Place place) {
+    if constexpr (Programs::isValidated)
+        placeOfTrace() = place;
     if (const OxrtRecordHeader* record = findHitRecord(ray))
         Programs::closestHit(ray, payload, *record);
     else if (Programs::isValidated && ray.recordIndex >= ray.thread->launch->hitgroupCount)
@@ -173,11 +197,8 @@ OXRT_INLINE void setRay(Ray& ray, OxrtThread& thread, uint64_t handle, const flo
     ray.sbtStride = sbtStride & 15;
     ray.missIndex = missIndex;
     if constexpr (Programs::isValidated) {
-        if (!isValidRay(ray))
-            faultWithValues(thread, OXRT_FAULT_INVALID_RAY, "invalid ray (origin, direction, tmin, tmax)", place, origin.x, origin.y, origin.z,
-                            direction.x, direction.y, direction.z, tmin, tmax);
-        else if (!ray.root && handle != 0)
-            fault(thread, OXRT_FAULT_INVALID_TRAVERSABLE, "the handle names no traversable of this context, or one that was destroyed", place);
+        placeOfTrace() = place;
+        checkRay<Programs>(ray, handle, place);
     }
 }
 

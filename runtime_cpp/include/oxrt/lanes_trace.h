@@ -18,18 +18,22 @@ OXRT_INLINE void runMisses(RayLanes<W>& ray, Lanes<bool, W> mask, typename Progr
     ray.active = mask;
     const Lanes<bool, W> found = findRecords(ray.records, launch, mask, launch.missRecords, launch.missStride, launch.missCount,
                                              ray.missIndex);
-    if constexpr (Programs::Scalar::isValidated)
+    if constexpr (Programs::Scalar::isValidated) {
+        placeOfTrace() = place;
         fault(*ray.thread, mask & (ray.missIndex >= launch.missCount), OXRT_FAULT_MISS_SBT,
               "miss_sbt_index is not below the number of miss records", place);
+    }
     if (any(found))
         Programs::miss(ray, found, payload);
 }
 
 template <class Programs, int W> OXRT_INLINE void runClosestHits(RayLanes<W>& ray, typename Programs::Payload& payload, Place place) {
     const Lanes<bool, W> found = findHitRecords(ray);
-    if constexpr (Programs::Scalar::isValidated)
+    if constexpr (Programs::Scalar::isValidated) {
+        placeOfTrace() = place;
         fault(*ray.thread, without(ray.active, found), OXRT_FAULT_HIT_SBT,
               "the hit needs a record behind the end of the hit group records", place);
+    }
     if (any(found)) {
         ray.active = found;
         Programs::closestHit(ray, found, payload);
@@ -63,16 +67,11 @@ OXRT_INLINE void traceNow(RayLanes<W>& ray, Lanes<bool, W> mask, typename Progra
     }
 }
 
-template <int W> OXRT_INLINE void checkRays(const RayLanes<W>& ray, Lanes<bool, W> mask, uint64_t handle, Place place) {
+template <class Scalar, int W> OXRT_INLINE void checkRays(const RayLanes<W>& ray, Lanes<bool, W> mask, uint64_t handle, Place place) {
     eachLane(mask, [&](int lane) {
         Ray one;
         scalarRay(one, ray, nullptr, lane);
-        if (!isValidRay(one))
-            faultWithValues(*one.thread, OXRT_FAULT_INVALID_RAY, "invalid ray (origin, direction, tmin, tmax)", place, one.origin.x,
-                            one.origin.y, one.origin.z, one.direction.x, one.direction.y, one.direction.z, one.tmin, one.tmax);
-        else if (!ray.root && handle != 0)
-            fault(*one.thread, OXRT_FAULT_INVALID_TRAVERSABLE,
-                  "the handle names no traversable of this context, or one that was destroyed", place);
+        checkRay<Scalar>(one, handle, place);
     });
 }
 
@@ -121,8 +120,10 @@ OXRT_INLINE void trace(LanesThread<W>& thread, Lanes<bool, W> mask, uint64_t han
     ray.sbtOffset = (sbtOffset | (sbtStride >> 4u)) & 15u;
     ray.sbtStride = sbtStride & 15u;
     ray.missIndex = missIndex;
-    if constexpr (Scalar::isValidated)
-        checkRays(ray, mask, handle, place);
+    if constexpr (Scalar::isValidated) {
+        placeOfTrace() = place;
+        checkRays<Scalar>(ray, mask, handle, place);
+    }
     // coherent packets offer a custom primitive to lanes that miss its box, which costs more than they save
     const bool callsIntersection = Scalar::hasIntersection && ray.root && (ray.root->needs & OXRT_SCENE_HAS_CUSTOM);
     const bool isCoherent = !callsIntersection && areCoherent(mask, origin, direction, tmax);
