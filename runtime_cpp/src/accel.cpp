@@ -1,81 +1,21 @@
 // See accel.h.
 #include "accel.h"
 
+#include "accel_check.h"
 #include "matrix.h"
-#include "motion.h"
-#include "objects.h"
 
 #include <algorithm>
 #include <chrono>
 #include <limits>
+#include <utility>
 
 namespace oxrt {
 
 namespace {
 
-constexpr std::uint32_t knownBuildFlags = OXRT_BUILD_FLAG_ALLOW_UPDATE | OXRT_BUILD_FLAG_ALLOW_COMPACTION |
-                                          OXRT_BUILD_FLAG_PREFER_FAST_TRACE | OXRT_BUILD_FLAG_PREFER_FAST_BUILD |
-                                          OXRT_BUILD_FLAG_ALLOW_RANDOM_VERTEX_ACCESS | OXRT_BUILD_FLAG_ALLOW_RANDOM_INSTANCE_ACCESS |
-                                          OXRT_BUILD_FLAG_ALLOW_OPACITY_MICROMAP_UPDATE |
-                                          OXRT_BUILD_FLAG_ALLOW_DISABLE_OPACITY_MICROMAPS | OXRT_BUILD_FLAG_NOT_ROBUST;
-constexpr std::uint64_t maxPrimitivesPerGas = std::uint64_t(1) << 29;
-constexpr std::uint64_t maxRecordsPerGas = std::uint64_t(1) << 24;
-
-void checkOptions(const OxrtAccelBuildOptions& options)
-{
-    if (options.buildFlags & ~knownBuildFlags)
-        fail(OXRT_ERROR_INVALID_VALUE, "buildFlags 0x%x has unknown bits 0x%x; combine BuildFlags", options.buildFlags,
-             options.buildFlags & ~knownBuildFlags);
-    constexpr std::uint32_t both = OXRT_BUILD_FLAG_PREFER_FAST_TRACE | OXRT_BUILD_FLAG_PREFER_FAST_BUILD;
-    if ((options.buildFlags & both) == both)
-        fail(OXRT_ERROR_INVALID_VALUE, "buildFlags holds PREFER_FAST_TRACE and PREFER_FAST_BUILD; choose one");
-    checkMotion(options.motion);
-}
-
 OxrtMotionOptions normalForm(const OxrtMotionOptions& motion)
 {
     return motion.numKeys > 1 ? motion : OxrtMotionOptions{1, 0, 0.0f, 0.0f};
-}
-
-// Motion holds for all inputs of a GAS, so each of them gives every key. First of all, since the number of keys says how much is read.
-void checkKeys(const OxrtBuildInput& input, unsigned number, const OxrtMotionOptions& motion)
-{
-    const unsigned keys = std::max(1u, input.numKeys);
-    if (keys != motion.numKeys)
-        fail(OXRT_ERROR_INVALID_VALUE, "input %u has %u motion keys but the motion options say %u; give one array for each key", number, keys,
-             motion.numKeys);
-    if (keys > RTC_MAX_TIME_STEP_COUNT)
-        fail(OXRT_ERROR_NOT_SUPPORTED, "input %u has %u motion keys; Embree takes at most %d for geometry, move it by a transform instead",
-             number, keys, RTC_MAX_TIME_STEP_COUNT);
-}
-
-void checkInputs(std::span<const OxrtBuildInput> inputs, const OxrtMotionOptions& motion)
-{
-    if (inputs.empty()) fail(OXRT_ERROR_INVALID_VALUE, "the list of build inputs is empty; give at least one");
-    if (!inputs.data()) fail(OXRT_ERROR_INVALID_VALUE, "the build inputs are NULL but there are %zu", inputs.size());
-    std::uint64_t primitives = 0;
-    std::uint64_t records = 0;
-    for (unsigned i = 0; i < inputs.size(); ++i) {
-        if (inputs[i].type != inputs[0].type)
-            fail(OXRT_ERROR_INVALID_VALUE, "input %u is of type 0x%x but input 0 of type 0x%x; make one accel per type and instance them",
-                 i, inputs[i].type, inputs[0].type);
-        if (inputs[i].type == OXRT_BUILD_INPUT_INSTANCES) continue;
-        if (inputs[i].type == OXRT_BUILD_INPUT_CURVES && inputs[i].curveType != inputs[0].curveType)
-            fail(OXRT_ERROR_INVALID_VALUE, "input %u has curve type 0x%x but input 0 has 0x%x; make one accel per type and instance them", i,
-                 inputs[i].curveType, inputs[0].curveType);
-        checkKeys(inputs[i], i, motion);
-        Geometry::check(inputs[i], i);
-        primitives += inputs[i].numPrimitives;
-        records += inputs[i].numSbtRecords;
-    }
-    if (primitives > maxPrimitivesPerGas)
-        fail(OXRT_ERROR_INVALID_VALUE, "the inputs hold %llu primitives; a GAS holds at most 2^29",
-             static_cast<unsigned long long>(primitives));
-    if (records > maxRecordsPerGas)
-        fail(OXRT_ERROR_INVALID_VALUE, "the inputs need %llu SBT records; a GAS has at most 2^24",
-             static_cast<unsigned long long>(records));
-    if (inputs[0].type == OXRT_BUILD_INPUT_INSTANCES && inputs.size() != 1)
-        fail(OXRT_ERROR_INVALID_VALUE, "%zu inputs of instances; an IAS has exactly one, put all instances into it", inputs.size());
 }
 
 std::span<const OxrtInstance> instancesOf(const OxrtBuildInput& input)
@@ -91,8 +31,8 @@ std::span<const OxrtInstance> instancesOf(const OxrtBuildInput& input)
 std::shared_ptr<Accel> Accel::make(std::shared_ptr<Context> context, const OxrtAccelBuildOptions& options,
                                    std::span<const OxrtBuildInput> inputs)
 {
-    checkOptions(options);
-    checkInputs(inputs, normalForm(options.motion));
+    checkBuildOptions(options);
+    checkBuildInputs(inputs, normalForm(options.motion));
     auto accel = std::make_shared<Accel>(context, options);
     accel->build(inputs);
     context->addTraversable(accel->handle(), accel);
@@ -154,9 +94,8 @@ std::shared_ptr<Accel> Accel::copy(std::span<const OxrtTraversableHandle> childr
         input.numPrimitives = kept.size();
         made->build({&input, 1}, this);
     } else {
-        std::vector<OxrtBuildInput> inputs;
-        for (const auto& geometry : geometries) inputs.push_back(geometry->asInput());
-        made->build(inputs);
+        made->copyGeometries(*this);
+        made->makeScene();
     }
     context->addTraversable(made->handle(), made);
     return made;
@@ -178,15 +117,8 @@ void Accel::build(std::span<const OxrtBuildInput> inputs, const Accel* original)
         instances = std::make_unique<Instances>(*context, instancesOf(inputs[0]), motion, original ? original->instances.get() : nullptr);
     else
         buildGeometries(inputs);
+    makeScene();
 
-    const std::lock_guard lock(context->buildMutex);
-    const std::int64_t bytesBefore = context->embreeBytes;
-    setUpScene();
-    commit();
-    embreeBytes = context->embreeBytes - bytesBefore;
-
-    if (instances) instances->addHandles(*context);
-    view.handle = context->traversables.add(&view);
     const std::chrono::duration<double, std::milli> elapsed = std::chrono::steady_clock::now() - begin;
     const OxrtAccelInfo made = info();
     context->log(4, "ACCEL",
@@ -195,6 +127,25 @@ void Accel::build(std::span<const OxrtBuildInput> inputs, const Accel* original)
                             static_cast<double>(made.memoryUsage) / (1 << 20)));
     if (instances && instances->singularCount() != 0)
         context->log(3, "ACCEL", formatText("%zu instances have a singular transform and are never hit", instances->singularCount()));
+}
+
+// Over the instances or geometries that are there, with handles.
+void Accel::makeScene()
+{
+    const std::lock_guard lock(context->buildMutex);
+    const std::int64_t bytesBefore = context->embreeBytes;
+    setUpScene();
+    commit();
+    embreeBytes = context->embreeBytes - bytesBefore;
+
+    if (instances) instances->addHandles(*context);
+    view.handle = context->traversables.add(&view);
+}
+
+void Accel::copyGeometries(const Accel& original)
+{
+    for (const auto& geometry : original.geometries) geometries.push_back(std::make_unique<Geometry>(*geometry));
+    geometryViews.resize(original.geometryViews.size());
 }
 
 void Accel::buildGeometries(std::span<const OxrtBuildInput> inputs)
@@ -301,7 +252,7 @@ void Accel::checkSameShape(std::span<const OxrtBuildInput> inputs) const
 void Accel::update(std::span<const OxrtBuildInput> inputs)
 {
     if (!updatable()) fail(OXRT_ERROR_INVALID_VALUE, "the accel was built without ALLOW_UPDATE; build it with that flag to update it");
-    checkInputs(inputs, motion);
+    checkBuildInputs(inputs, motion);
     checkSameShape(inputs);
 
     context->beginChange("updating an accel");
@@ -332,6 +283,22 @@ RTCBounds Accel::boundsDuring(float, float) const
     return isEmpty(bounds) ? emptyBounds() : bounds;
 }
 
+RTCBounds Accel::boundsAt(std::uint32_t key) const
+{
+    if (source) return source->boundsAt(key);
+    if (motion.numKeys < 2) return boundsDuring(0, 0);
+    if (instances) {
+        const float fraction = static_cast<float>(key) / static_cast<float>(motion.numKeys - 1);
+        return instances->boundsAt(motion.timeBegin + (motion.timeEnd - motion.timeBegin) * fraction);
+    }
+    RTCBounds all = emptyBounds();
+    for (const auto& geometry : geometries) {
+        const RTCBounds own = geometry->boundsAt(key);
+        if (!isEmpty(own)) extend(all, own);
+    }
+    return all;
+}
+
 OxrtAccelInfo Accel::info() const
 {
     constexpr float infinity = std::numeric_limits<float>::infinity();
@@ -358,72 +325,3 @@ OxrtAccelInfo Accel::info() const
 }
 
 } // namespace oxrt
-
-using namespace oxrt;
-
-OxrtResult oxrtAccelBuild(OxrtContext context, const OxrtAccelBuildOptions* options, const OxrtBuildInput* inputs, unsigned numInputs,
-                          OxrtAccel* accel)
-{
-    return guard([&] {
-        const auto owner = find(context);
-        owner->attempt("ACCEL", [&] {
-            if (!accel) fail(OXRT_ERROR_INVALID_VALUE, "the result pointer `accel` is NULL");
-            *accel = nullptr;
-            *accel = publish(Accel::make(owner, options ? *options : OxrtAccelBuildOptions{}, {inputs, numInputs}));
-        });
-    });
-}
-
-OxrtResult oxrtAccelUpdate(OxrtAccel accel, const OxrtBuildInput* inputs, unsigned numInputs)
-{
-    return guard([&] {
-        const auto self = find(accel);
-        self->context->attempt("ACCEL", [&] { self->update({inputs, numInputs}); });
-    });
-}
-
-OxrtResult oxrtAccelGetInfo(OxrtAccel accel, OxrtAccelInfo* info)
-{
-    return guard([&] {
-        const auto self = find(accel);
-        if (!info) fail(OXRT_ERROR_INVALID_VALUE, "the result pointer `info` is NULL");
-        *info = self->info();
-    });
-}
-
-OxrtResult oxrtAccelCompact(OxrtAccel accel, OxrtAccel* compacted)
-{
-    return guard([&] {
-        const auto self = find(accel);
-        self->context->attempt("ACCEL", [&] {
-            if (!compacted) fail(OXRT_ERROR_INVALID_VALUE, "the result pointer `compacted` is NULL");
-            *compacted = nullptr;
-            if (!self->mayCompact())
-                fail(OXRT_ERROR_INVALID_VALUE, "the accel was built without ALLOW_COMPACTION; build it with that flag to compact it");
-            *compacted = publish(self->copy({}));
-        });
-    });
-}
-
-OxrtResult oxrtAccelRelocate(OxrtAccel accel, const OxrtTraversableHandle* children, uint64_t numChildren, OxrtAccel* relocated)
-{
-    return guard([&] {
-        const auto self = find(accel);
-        self->context->attempt("ACCEL", [&] {
-            if (!relocated) fail(OXRT_ERROR_INVALID_VALUE, "the result pointer `relocated` is NULL");
-            *relocated = nullptr;
-            if (!children && numChildren != 0) fail(OXRT_ERROR_INVALID_VALUE, "children is NULL but numChildren is not 0");
-            *relocated = publish(self->copy({children, numChildren}));
-        });
-    });
-}
-
-OxrtResult oxrtAccelDestroy(OxrtAccel accel)
-{
-    return guard([&] {
-        std::shared_ptr<Accel> self = withdraw(accel);
-        self->invalidate();
-        const std::shared_ptr<Context> context = self->context;
-        context->retire(std::move(self));
-    });
-}

@@ -35,11 +35,16 @@ public:
 
     OxrtAccelInfo info() const;
     RTCBounds boundsDuring(float begin, float end) const override;
+    // At one motion key.
+    RTCBounds boundsAt(std::uint32_t key) const;
+    std::uint32_t keyCount() const { return motion.numKeys; }
 
     const std::shared_ptr<Context> context;
 
 private:
     void build(std::span<const OxrtBuildInput> inputs, const Accel* original = nullptr);
+    void copyGeometries(const Accel& original);
+    void makeScene();
     void share(std::shared_ptr<const Accel> original);
     std::vector<OxrtInstance> instanceInputs(std::span<const OxrtTraversableHandle> children) const;
     void buildGeometries(std::span<const OxrtBuildInput> inputs);

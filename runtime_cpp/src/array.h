@@ -27,6 +27,10 @@ public:
         if (size != 0) std::memcpy(elements.get(), source, size * sizeof(T));
     }
 
+    Array(const Array& original) : Array(original.data(), original.size()) {}
+    Array(Array&&) = default;
+    Array& operator=(Array&&) = default;
+
     T* data() { return elements.get(); }
     const T* data() const { return elements.get(); }
     std::size_t size() const { return count; }

@@ -104,7 +104,7 @@ Cubic segmentAt(const OxrtGeometry& view, std::uint32_t primitive, const KeyPosi
     return cubicOf(kind.basis, between);
 }
 
-void segmentBounds(const OxrtGeometry& view, std::uint32_t primitive, std::uint32_t key, RTCBounds& bounds)
+RTCBounds segmentBounds(const OxrtGeometry& view, std::uint32_t primitive, std::uint32_t key)
 {
     const Bezier bezier = bezierOf(segmentAt(view, primitive, {key, 0}));
     const Point4& first = bezier.p[0];
@@ -116,7 +116,7 @@ void segmentBounds(const OxrtGeometry& view, std::uint32_t primitive, std::uint3
         high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z), 0};
         radius = std::max(radius, std::fabs(p.w));
     }
-    bounds = {low.x - radius, low.y - radius, low.z - radius, 0, high.x + radius, high.y + radius, high.z + radius, 0};
+    return {low.x - radius, low.y - radius, low.z - radius, 0, high.x + radius, high.y + radius, high.z + radius, 0};
 }
 
 } // namespace oxrt

@@ -37,6 +37,8 @@ public:
         }
     }
 
+    std::unique_ptr<Shape> clone() const override { return std::make_unique<Curves>(*this); }
+
     void copy(const OxrtBuildInput& input) override
     {
         curves.copy(input);
@@ -76,6 +78,11 @@ public:
     std::size_t bytes() const override
     {
         return curves.bytes() + elevated.bytes() + elevatedFirsts.bytes() + neighbours.bytes() + caps.ends.size() * sizeof(CurveEnd);
+    }
+
+    RTCBounds boundsAt(const OxrtGeometry& view, std::uint32_t primitive, std::uint32_t key) const override
+    {
+        return segmentBounds(view, primitive, key);
     }
 
     std::uint32_t extraCount() const override { return caps.count(); }

@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace oxrt {
 
@@ -16,8 +15,6 @@ constexpr std::uint64_t maxPrimitives = std::uint64_t(1) << 29;
 constexpr std::uint32_t maxRecords = 1u << 24;
 constexpr std::uint32_t knownGeometryFlags = 7;
 constexpr std::uint32_t flagDisableAnyHit = 1;
-// Embree drops primitives that reach further.
-constexpr float farthest = 1.8e18f;
 
 void checkRecords(const OxrtBuildInput& input, unsigned number)
 {
@@ -89,21 +86,10 @@ void transformPoints(const float* matrix, float* points, std::uint64_t count)
     }
 }
 
-// As OptiX does it: boxes that are inverted, NaN or a single point are never visited, infinite ones always.
 void boxBounds(const RTCBoundsFunctionArguments* arguments)
 {
-    constexpr float infinity = std::numeric_limits<float>::infinity();
     const auto& geometry = *static_cast<const OxrtGeometry*>(arguments->geometryUserPtr);
-    const float* box = geometry.vertices + 6 * (geometry.vertexCount * arguments->timeStep + arguments->primID);
-    const bool ordered = box[0] <= box[3] && box[1] <= box[4] && box[2] <= box[5];
-    const bool extended = box[0] < box[3] || box[1] < box[4] || box[2] < box[5];
-    RTCBounds& bounds = *arguments->bounds_o;
-    if (!ordered || !extended) {
-        bounds = {infinity, infinity, infinity, 0, -infinity, -infinity, -infinity, 0};
-        return;
-    }
-    const auto limit = [](float value) { return std::clamp(value, -farthest, farthest); };
-    bounds = {limit(box[0]), limit(box[1]), limit(box[2]), 0, limit(box[3]), limit(box[4]), limit(box[5]), 0};
+    *arguments->bounds_o = boundsOfBox(geometry.vertices + 6 * (geometry.vertexCount * arguments->timeStep + arguments->primID));
 }
 
 // Runs where a pipeline without intersection programs meets custom primitives: nothing is hit.
@@ -179,37 +165,27 @@ Geometry::Geometry(const OxrtBuildInput& input, std::uint32_t recordBase) : inpu
         view.vertexCount = view.primitiveCount;
         vertices = Array<float>(6 * view.vertexCount * view.keyCount);
     }
+    describe();
+    update(input);
+}
+
+Geometry::Geometry(const Geometry& original)
+    : inputType(original.inputType), view(original.view), recordFlags(original.recordFlags), recordOffsets(original.recordOffsets),
+      vertices(original.vertices), indices(original.indices), shape(original.shape ? original.shape->clone() : nullptr),
+      micromaps(original.micromaps)
+{
+    describe();
+    view.opacityMicromaps = micromaps.data();
+}
+
+// Where the arrays are that kernels read.
+void Geometry::describe()
+{
     view.recordFlags = recordFlags.data();
     view.recordOffsets = recordOffsets.data();
     view.vertices = vertices.data();
     view.indices = indices.data();
-    const std::size_t floatsPerKey = vertices.size() / view.keyCount;
-    for (std::uint32_t key = 0; key < view.keyCount; ++key) keys.push_back(vertices.data() + floatsPerKey * key);
     if (shape) shape->describe(view);
-    update(input);
-}
-
-OxrtBuildInput Geometry::asInput() const
-{
-    if (shape || view.opacityMicromaps)
-        fail(OXRT_ERROR_NOT_SUPPORTED, "%s cannot be compacted or relocated in this version; build them again",
-             shape ? "spheres and curves" : "triangles with opacity micromaps");
-    OxrtBuildInput input = {};
-    input.type = inputType;
-    input.numSbtRecords = view.recordCount;
-    input.flags = recordFlags.data();
-    input.sbtIndexOffsets = recordOffsets.data();
-    input.primitiveIndexOffset = view.primitiveIndexOffset;
-    input.numKeys = view.keyCount;
-    input.numPrimitives = view.primitiveCount;
-    if (inputType == OXRT_BUILD_INPUT_TRIANGLES) {
-        input.vertices = keys.data();
-        input.numVertices = view.vertexCount;
-        input.indices = indices.data();
-    } else {
-        input.aabbs = keys.data();
-    }
-    return input;
 }
 
 void Geometry::update(const OxrtBuildInput& input)

@@ -14,6 +14,9 @@
 
 namespace oxrt {
 
+// As OptiX does it: boxes that are inverted, NaN or a single point are never visited (empty bounds), infinite ones always.
+RTCBounds boundsOfBox(const float* box);
+
 class Geometry {
 public:
     // Throws Failure for input that cannot be built; `number` is the input's place in the caller's list.
@@ -21,6 +24,8 @@ public:
 
     // `input` passed check().
     Geometry(const OxrtBuildInput& input, std::uint32_t recordBase);
+    // With arrays of its own.
+    Geometry(const Geometry& original);
 
     // `target` is what kernels see; it becomes the user pointer of the Embree geometry and must outlive it.
     void attach(const EmbreeLibrary& embree, RTCDevice device, RTCScene scene, unsigned geomID, OxrtGeometry& target, bool updatable) const;
@@ -36,15 +41,15 @@ public:
 
     bool hasSameMicromaps(const OxrtBuildInput& input) const { return micromaps.isSame(input); }
 
-    // What would build this geometry again; it points into this one.
-    OxrtBuildInput asInput() const;
-
     const OxrtGeometry& geometry() const { return view; }
     std::uint32_t buildInputType() const { return inputType; }
     std::uint32_t needs() const;
+    // Around all primitives at one motion key; empty if none can be hit.
+    RTCBounds boundsAt(std::uint32_t key) const;
     std::size_t bytes() const;
 
 private:
+    void describe();
     void copyRecords(const OxrtBuildInput& input);
     void copyTriangles(const OxrtBuildInput& input);
     void copyBoxes(const OxrtBuildInput& input);
@@ -58,7 +63,6 @@ private:
     Array<std::uint32_t> recordFlags;
     Array<std::uint32_t> recordOffsets;
     Array<float> vertices;
-    std::vector<const float*> keys; // where the vertices or boxes of each motion key begin
     Array<std::uint32_t> indices;
     std::unique_ptr<Shape> shape; // spheres and curves
     Micromaps micromaps;

@@ -177,6 +177,19 @@ void Instances::boundInstance(const RTCBoundsFunctionArguments* arguments)
         *arguments->bounds_o = self.keepsUnusable ? RTCBounds{} : emptyBounds();
 }
 
+RTCBounds Instances::boundsAt(float time) const
+{
+    std::vector<RTCBounds> below;
+    for (const Child& child : children) below.push_back(child.traversable->boundsDuring(time, time));
+    RTCBounds all = emptyBounds();
+    for (std::size_t i = 0; i < views.size(); ++i) {
+        if (!usable[i]) continue;
+        const RTCBounds own = imageOf(views[i].objectToWorld, below[childNumbers[i]]);
+        if (!isEmpty(own)) extend(all, own);
+    }
+    return all;
+}
+
 void Instances::attachOwn(const EmbreeLibrary& embree, RTCDevice device, RTCScene scene, bool updatable)
 {
     keepsUnusable = updatable;

@@ -43,6 +43,8 @@ public:
     unsigned graphDepth() const; // of the deepest child
     std::size_t singularCount() const { return singular; }
     std::size_t bytes() const;
+    // Around all instances at one time.
+    RTCBounds boundsAt(float time) const;
 
 private:
     struct Child {

@@ -12,8 +12,6 @@ namespace {
 
 // Kernels move rays in binary32: a few units in the last place of the largest coordinate.
 constexpr double rounding = 1e-6;
-// Embree drops primitives that reach further.
-constexpr double farthest = 1.8e18;
 
 Interval product(const Interval& a, const Interval& b)
 {

@@ -13,6 +13,9 @@ struct Interval {
     double lower, upper;
 };
 
+// Embree drops primitives that reach further.
+constexpr double farthest = 1.8e18;
+
 RTCBounds emptyBounds();
 bool isEmpty(const RTCBounds& bounds);
 void extend(RTCBounds& bounds, const RTCBounds& other);

@@ -140,7 +140,7 @@ void intersectRibbon(const OxrtGeometry& view, unsigned geometry, unsigned primi
 void ribbonBounds(const RTCBoundsFunctionArguments* arguments)
 {
     const auto& view = *static_cast<const OxrtGeometry*>(arguments->geometryUserPtr);
-    segmentBounds(view, arguments->primID, arguments->timeStep, *arguments->bounds_o);
+    *arguments->bounds_o = segmentBounds(view, arguments->primID, arguments->timeStep);
 }
 
 class Ribbons final : public Shape {
@@ -149,6 +149,7 @@ public:
     {
         computeWidths(input);
     }
+    std::unique_ptr<Shape> clone() const override { return std::make_unique<Ribbons>(*this); }
     void copy(const OxrtBuildInput& input) override
     {
         curves.copy(input);
@@ -167,6 +168,11 @@ public:
     }
     void refit(const EmbreeLibrary&, RTCGeometry) const override {}
     std::size_t bytes() const override { return curves.bytes() + widths.bytes(); }
+
+    RTCBounds boundsAt(const OxrtGeometry& view, std::uint32_t primitive, std::uint32_t key) const override
+    {
+        return segmentBounds(view, primitive, key);
+    }
 
 private:
     void computeWidths(const OxrtBuildInput& input)

@@ -141,7 +141,7 @@ void intersectSegment(const OxrtGeometry& view, unsigned geometry, unsigned prim
 void segmentBoundsOf(const RTCBoundsFunctionArguments* arguments)
 {
     const auto& view = *static_cast<const OxrtGeometry*>(arguments->geometryUserPtr);
-    segmentBounds(view, arguments->primID, arguments->timeStep, *arguments->bounds_o);
+    *arguments->bounds_o = segmentBounds(view, arguments->primID, arguments->timeStep);
 }
 
 class RoundedCurves final : public Shape {
@@ -150,6 +150,7 @@ public:
     {
         if (input.endcapFlags != 0) caps.ends = curves.strandEnds();
     }
+    std::unique_ptr<Shape> clone() const override { return std::make_unique<RoundedCurves>(*this); }
     void copy(const OxrtBuildInput& input) override { curves.copy(input); }
     void describe(OxrtGeometry& view) const override
     {
@@ -164,6 +165,10 @@ public:
     }
     void refit(const EmbreeLibrary&, RTCGeometry) const override {}
     std::size_t bytes() const override { return curves.bytes() + caps.ends.size() * sizeof(CurveEnd); }
+    RTCBounds boundsAt(const OxrtGeometry& view, std::uint32_t primitive, std::uint32_t key) const override
+    {
+        return segmentBounds(view, primitive, key);
+    }
     std::uint32_t extraCount() const override { return caps.count(); }
     RTCGeometry makeExtra(const EmbreeLibrary& embree, RTCDevice device, unsigned geomID, const OxrtGeometry& view,
                           OxrtGeometry& extra) override

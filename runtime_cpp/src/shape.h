@@ -13,8 +13,10 @@ namespace oxrt {
 
 class Shape {
 public:
+    Shape() = default;
     virtual ~Shape() = default;
 
+    virtual std::unique_ptr<Shape> clone() const = 0;
     // Copies the coordinates of the input: at the construction, and again at updates with input of the same shape.
     virtual void copy(const OxrtBuildInput& input) = 0;
     // Enters what kernels read.
@@ -24,6 +26,8 @@ public:
     // Tells Embree that the coordinates have changed.
     virtual void refit(const EmbreeLibrary& embree, RTCGeometry geometry) const = 0;
     virtual std::size_t bytes() const = 0;
+    // A box around one primitive at one motion key.
+    virtual RTCBounds boundsAt(const OxrtGeometry& view, std::uint32_t primitive, std::uint32_t key) const = 0;
 
     // Primitives that Embree does not know as part of the first geometry: flat ends of curves. They report the first geometry's number.
     virtual std::uint32_t extraCount() const { return 0; }

@@ -18,6 +18,8 @@ public:
         : count(input.numPrimitives), keyCount(std::max(1u, input.numKeys)), spheres(floatsPerSphere * count * keyCount)
     {}
 
+    std::unique_ptr<Shape> clone() const override { return std::make_unique<Spheres>(*this); }
+
     void copy(const OxrtBuildInput& input) override
     {
         for (std::uint32_t key = 0; key < keyCount; ++key)
@@ -53,6 +55,12 @@ public:
     }
 
     std::size_t bytes() const override { return spheres.bytes(); }
+
+    RTCBounds boundsAt(const OxrtGeometry&, std::uint32_t primitive, std::uint32_t key) const override
+    {
+        const float* s = spheres.data() + floatsPerSphere * (count * key + primitive);
+        return {s[0] - s[3], s[1] - s[3], s[2] - s[3], 0, s[0] + s[3], s[1] + s[3], s[2] + s[3], 0};
+    }
 
 private:
     const std::uint64_t count;

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import math
+import runpy
+from pathlib import Path
 
 import numpy as np
 import pytest
-from harness import Harness
+from harness import MODES, Harness
 from scenes import (
     CORNER,
     boxes,
@@ -162,3 +164,52 @@ def test_transforms_of_many_instances_agree_with_numpy(harness: Harness) -> None
         to_world, to_object = (np.array(hit[key]).reshape(3, 4) for key in ("o2w", "w2o"))
         assert np.allclose(to_world, np.array(matrices[index]).reshape(3, 4), atol=1e-6)
         assert np.allclose(to_world[:, :3] @ to_object[:, :3], np.eye(3), atol=1e-5)
+
+
+
+SCENE_PARAMS = """
+import optixc as ox
+
+@ox.struct
+class Graph:
+    top: ox.Traversable
+
+@ox.struct
+class Params:
+    graph: Graph
+    other: ox.Traversable
+
+params = ox.launch_params(Params)
+
+@ox.program
+def __raygen__nothing():
+    pass
+"""
+
+
+def test_the_report_tells_who_walks_through_a_graph(harness: Harness, tmp_path: Path) -> None:
+    if harness.mode == "interpreter":
+        pytest.skip("interpreted launches are not the pipeline's own")
+    context = harness.context
+    flat = context.accel_build([ox.BuildInputTriangles(np.float32(CORNER))])
+    one_level = context.accel_build([ox.BuildInputInstances([flat])])
+    nested = context.accel_build([ox.BuildInputInstances([one_level])])
+    moved = context.static_transform(flat, np.eye(3, 4))
+    assert [accel.has_native_instances for accel in (flat, one_level, nested)] == [False, True, False]
+
+    file = tmp_path / "graph.py"
+    file.write_text(SCENE_PARAMS)
+    module = context.module_create(file)
+    group = context.program_group_create(raygen=module["__raygen__nothing"])
+    pipeline = context.pipeline_create([group], simd=MODES[harness.mode])
+    names = runpy.run_path(str(file))
+    sbt = ox.ShaderBindingTable(raygen=group.record(), miss=[], hitgroup=[])
+    assert pipeline.report().has_native_instances == {}
+    for top, other, expected in ((flat, one_level, (True, True)), (nested, moved, (False, False)), (0, int(flat.handle), None)):
+        params = names["Params"](names["Graph"](top), other)
+        pipeline.launch(params, sbt, 1)
+        found = pipeline.report().has_native_instances
+        assert found == ({} if expected is None else {"graph.top": expected[0], "other": expected[1]})
+        assert ("graph graph.top: walked through by" in str(pipeline.report())) == bool(found)
+    del params
+    assert pipeline.report().has_native_instances == {}

@@ -8,12 +8,12 @@ from typing import Any
 
 import numpy as np
 
-from optixc.enums_scene import BuildFlags
+from optixc.enums_scene import AccelPropertyType, BuildFlags
 from optixc.errors import InvalidValueError
 from optixc.host import library
 from optixc.host.context import Context
 from optixc.host.inputs import BuildInput, MotionOptions, pack_inputs, take_handle
-from optixc.host.sbt_reach import parts_of
+from optixc.host.sbt_reach import Child, Geometry, below, parts_of
 
 
 class TraversableHandle(int):
@@ -78,6 +78,29 @@ class Accel:
         """Whether Embree walks through this IAS by itself: one level over static structures. Other graphs are walked through by kernels."""
         return bool(self._info().hasNativeInstances)
 
+    @property
+    def is_native(self) -> bool:
+        """Whether Embree walks through this structure without the kernels: geometry, or an IAS with `has_native_instances`."""
+        info = self._info() if self._accel is not None and self._context.is_alive else None
+        return info is not None and bool(info.isGas or info.hasNativeInstances)
+
+    def emit_property(self, property_type: AccelPropertyType | int) -> Any:
+        """OptiX's optixAccelEmitProperty: COMPACTED_SIZE is a number of bytes and needs ALLOW_COMPACTION.
+
+        AABBS are the world bounds at each motion key, float32 (keys, 2, 3), minimum above maximum where nothing can be hit.
+        """
+        ffi, emit = library.ffi(), library.lib().oxrtAccelEmitProperty
+        if property_type == AccelPropertyType.COMPACTED_SIZE:
+            size = ffi.new("uint64_t*")
+            library.check(emit(self._live(), int(property_type), size, 8))
+            return int(size[0])
+        if property_type == AccelPropertyType.AABBS:
+            keys = 1 if self._motion is None else max(1, int(self._motion.num_keys))
+            boxes = np.empty((keys, 2, 3), np.float32)
+            library.check(emit(self._live(), int(property_type), ffi.cast("float*", boxes.ctypes.data), boxes.nbytes))
+            return boxes
+        raise InvalidValueError(f"emit_property takes an AccelPropertyType, not {property_type!r}")
+
     def update(self, inputs: Sequence[BuildInput]) -> Accel:
         """Refits to the same inputs with other coordinates; needs ALLOW_UPDATE. The handle stays."""
         if not self._build_flags & BuildFlags.ALLOW_UPDATE:
@@ -95,21 +118,25 @@ class Accel:
         """
         made = library.ffi().new("OxrtAccel*")
         library.check(library.lib().oxrtAccelCompact(self._live(), made))
-        return self._copied(made[0], self._children)
+        return self._copied(made[0], self._children, self.parts)
 
     def relocate(self, children: Sequence[Any] | None = None) -> Accel:
         """Another accel that is hit like this one; of an IAS with other children where they are given, one for each instance."""
         ffi = library.ffi()
+        if children is not None and not isinstance(children, Sequence | np.ndarray):
+            raise InvalidValueError(f"relocate takes a list of children, not {type(children).__name__}")
         handles = ffi.NULL if children is None else ffi.new("uint64_t[]", [take_handle(child, "relocate") for child in children])
         made = ffi.new("OxrtAccel*")
         library.check(library.lib().oxrtAccelRelocate(self._live(), handles, 0 if children is None else len(children), made))
-        return self._copied(made[0], self._children if children is None else tuple(children))
+        if children is None:
+            return self._copied(made[0], self._children, self.parts)
+        return self._copied(made[0], tuple(children), below(self.parts, children))
 
-    def _copied(self, accel: Any, children: tuple[Any, ...]) -> Accel:
+    def _copied(self, accel: Any, children: tuple[Any, ...], parts: tuple[Geometry | Child, ...]) -> Accel:
         """A Python object for a copy that the runtime made."""
         made: Accel = object.__new__(Accel)
         made._accel, made._context, made._build_flags, made._motion = accel, self._context, self._build_flags, self._motion
-        made._inputs, made._children = (), children
+        made._inputs, made._children, made.parts = (), children, parts
         made._handle = int(made._info().handle)
         return made
 

@@ -4,13 +4,15 @@ from __future__ import annotations
 
 import sys
 import threading
+import weakref
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 from optixc.errors import InvalidDeviceContextError, InvalidOperationError, InvalidValueError, ValidationFailureError, from_code
 from optixc.host import bound_values, library, structs
 from optixc.host.context import Context
+from optixc.host.graph_report import graph_forms
 from optixc.host.groups import ProgramGroup, Record, check_layout
 from optixc.host.sbt import ShaderBindingTable
 from optixc.host.stack_sizes import StackSizes, nesting_that_fits
@@ -19,6 +21,7 @@ STEP_MS = 50
 FAULT_BOUND_VALUE = 3
 MAX_STACK_SIZE = 1 << 24
 MAX_GRAPH_DEPTH, SINGLE_LEVEL_DEPTH = 31, 2
+_WALKED = {True: "walked through by Embree", False: "walked through by the kernels (nested, moving, or under transforms)"}
 _C_SLOTS = {"direct_callable": "directCallable", "continuation_callable": "continuationCallable"}
 
 
@@ -40,6 +43,7 @@ class PipelineReport:
     bound_values: tuple[dict[str, Any], ...] = ()
     stack: dict[str, int] = field(default_factory=dict)
     is_any_graph: bool = True
+    has_native_instances: dict[str, bool] = field(default_factory=dict)
     trace_uses: tuple[dict[str, Any], ...] = ()
     calls_callables: bool = False
     functions: tuple[dict[str, Any], ...] = ()
@@ -55,6 +59,7 @@ class PipelineReport:
             *(f"stack of {name}: {size} bytes" for name, size in self.stack.items()),
             *(f"bound {one['name']} = {one['value']} ({one['reads']} reads)" for one in self.bound_values),
             *(f"ignored on a CPU: {one}" for one in self.ignored),
+            *(f"graph {name}: {_WALKED[native]}" for name, native in self.has_native_instances.items()),
         ]
         return "\n".join(lines)
 
@@ -91,6 +96,7 @@ class Pipeline:
         self._params = params
         self.programs = {one["name"]: one for one in programs}
         self._params_type: type | None = None
+        self._last_params: weakref.ref[Any] | None = None
         self._lock = threading.Lock()
         self._lib = library.lib()
         ffi = library.ffi()
@@ -115,6 +121,7 @@ class Pipeline:
         self._check_launch(params, sbt)
         with self._lock:
             data, size, table = self._pack(params, sbt)
+            self._last_params = weakref.ref(params) if self._params is not None else None
             self._run(data, size, table, width, height, depth)
 
     def launch_inputs(self, params: Any, sbt: ShaderBindingTable) -> tuple[Any, Any, int, Any]:
@@ -153,8 +160,12 @@ class Pipeline:
         return int(found[0])
 
     def report(self) -> PipelineReport:
-        """What was compiled in and why, compile seconds and cache hit, trace forms."""
-        return self._report
+        """What was compiled in and why, compile seconds and cache hit, trace forms; and of the last launch who walked through its graphs.
+
+        `has_native_instances` holds the traversables of its parameters by field, as long as the parameters are there.
+        """
+        params = self._last_params() if self._last_params is not None else None
+        return replace(self._report, has_native_instances=graph_forms(params)) if params is not None else self._report
 
     def frame_of(self, program: str) -> int:
         """Bytes of stack that a call of a program takes."""

@@ -6,6 +6,8 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any
 
+import numpy as np
+
 from optixc.errors import InvalidValueError
 
 _MOST_PLACES = 200_000
@@ -49,11 +51,16 @@ def parts_of(inputs: Sequence[Any]) -> tuple[Geometry | Child, ...]:
             parts.append(Geometry(_kind(one), int(one.num_sbt_records)))
             continue
         given = getattr(one, "sbt_offsets", None)
-        for number, instance in enumerate(one.instances):
+        offsets = np.broadcast_to(0 if given is None else np.asarray(given).reshape(-1), len(one.instances))
+        for instance, offset in zip(one.instances, offsets.tolist(), strict=True):
             is_instance = hasattr(instance, "traversable")
-            offset = instance.sbt_offset if is_instance else given[number] if given is not None else 0
-            parts.append(Child(instance.traversable if is_instance else instance, int(offset)))
+            parts.append(Child(instance.traversable, int(instance.sbt_offset)) if is_instance else Child(instance, offset))
     return tuple(parts)
+
+
+def below(parts: Sequence[Geometry | Child], traversables: Sequence[Any]) -> tuple[Geometry | Child, ...]:
+    """The parts of an IAS with other traversables, one for each instance."""
+    return tuple(Child(one, part.sbt_offset) if isinstance(part, Child) else part for part, one in zip(parts, traversables, strict=True))
 
 
 def places(traversable: Any) -> Iterator[Place]:

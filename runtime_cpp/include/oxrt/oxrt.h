@@ -210,6 +210,11 @@ OXRT_API OxrtResult oxrtAccelGetInfo(OxrtAccel accel, OxrtAccelInfo* info);
 OXRT_API OxrtResult oxrtAccelCompact(OxrtAccel accel, OxrtAccel* compacted);
 /* The same without that flag; of an IAS with other children where `children` is not NULL: one handle for each instance. */
 OXRT_API OxrtResult oxrtAccelRelocate(OxrtAccel accel, const OxrtTraversableHandle* children, uint64_t numChildren, OxrtAccel* relocated);
+enum { OXRT_PROPERTY_TYPE_COMPACTED_SIZE = 0x2181, OXRT_PROPERTY_TYPE_AABBS = 0x2182 };
+
+/* One property of a structure as it is now. COMPACTED_SIZE: one uint64, needs ALLOW_COMPACTION. AABBS: for each motion key 6 floats, min xyz
+   and max xyz (min > max if nothing can be hit). `resultSize` is just that many bytes. */
+OXRT_API OxrtResult oxrtAccelEmitProperty(OxrtAccel accel, uint32_t type, void* result, size_t resultSize);
 /* The handle is stale from here on; memory goes when no IAS and no launch uses it. */
 OXRT_API OxrtResult oxrtAccelDestroy(OxrtAccel accel);
 
