@@ -299,7 +299,10 @@ OXRT_INLINE TriangleVertices triangleVerticesAt(const OxrtTraversableView& gas, 
     return __builtin_expect(geometry.keyCount > 1, 0) ? movingTriangle(gas, geometry, primitive, time) : triangleVertices(geometry, primitive);
 }
 /* Corners in object space at the ray's time, the pre-transform applied. */
+/* Zero where the hit is no triangle: its arrays are laid out otherwise. */
 OXRT_INLINE TriangleVertices getTriangleVertexData(const Ray& ray) {
+    if (!isTriangleGeometry(ray))
+        return {};
     return triangleVerticesAt(holderOf(ray), *ray.geometry, ray.primitive, ray.time);
 }
 

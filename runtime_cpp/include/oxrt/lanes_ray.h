@@ -367,11 +367,12 @@ template <int W> OXRT_INLINE Lanes<float, W> getCurveParameter(const RayLanes<W>
 template <int W, class Places> OXRT_INLINE Wide<float3, W> vertexAt(const Places& places, Lanes<bool, W> mask) {
     return {gather<float, W>(places, 0, mask), gather<float, W>(places, 4, mask), gather<float, W>(places, 8, mask)};
 }
+/* Zero in lanes that hit no triangle: their arrays are laid out otherwise. */
 template <int W> OXRT_INLINE Wide<TriangleVertices, W> getTriangleVertexData(const RayLanes<W>& ray) {
     if (ray.root->needs & OXRT_SCENE_HAS_MOTION)
         return mapHits(ray, [](const Ray& one, int) { return getTriangleVertexData(one); });
     const Lanes<uint32_t, W> primitive = localPrimitive(ray);
-    const Lanes<bool, W> mask = ray.active;
+    const Lanes<bool, W> mask = ray.active & (geometryType(ray) == uint32_t(OXRT_PRIMITIVE_TRIANGLE));
     Wide<float3, W> corners[3];
     if (ray.commonGeometry) {
         const WordPlaces<W> indices = placesIn<uint3, W>(reinterpret_cast<const uint3*>(ray.commonGeometry->indices), primitive);
