@@ -10,17 +10,17 @@ import argparse
 import dataclasses
 import json
 import os
-import resource
-import time
+import sys
 from pathlib import Path
 
 import courtyard
 import numpy as np
 import shader
-from tqdm import tqdm
 
 import optixc as ox
-from optixc.stdlib.camera import Pinhole
+
+sys.path.append(str(Path(__file__).resolve().parents[1]))
+from rendering import accumulate, pinhole, print_statistics, timed_build
 
 SCENES_DIR = Path(os.environ.get("OXRT_SCENES_DIR", Path(__file__).resolve().parents[2] / ".." / "shared" / "scenes"))
 
@@ -59,15 +59,6 @@ def load(name: str, camera: int) -> Scene:
     )
 
 
-def pinhole(scene: Scene, aspect: float) -> Pinhole:
-    """The scene's camera as half axes of its image plane; y is up."""
-    right = np.cross(scene.forward, [0.0, 1.0, 0.0])
-    right /= np.linalg.norm(right)
-    up = np.cross(right, scene.forward) / np.linalg.norm(scene.forward)
-    half_height = np.linalg.norm(scene.forward) * np.tan(np.radians(0.5 * scene.vertical_fov))
-    return Pinhole(eye=scene.eye, u=half_height * aspect * right, v=half_height * up, w=scene.forward)
-
-
 def render(scene: Scene, width: int, height: int, samples: int, occlusion_rays: int, *, verbose: bool = False) -> np.ndarray:
     """The picture as (height, width, 4) floats; `verbose` prints what it took."""
     context = ox.DeviceContext()
@@ -78,9 +69,7 @@ def render(scene: Scene, width: int, height: int, samples: int, occlusion_rays: 
     surface = context.program_group_create(closesthit=module["__closesthit__surface"])
     pipeline = context.pipeline_create([raygen, nothing, clear, surface], max_trace_depth=1)
 
-    start = time.perf_counter()
-    accel = context.accel_build([ox.BuildInputTriangles(scene.vertices, scene.indices)])
-    build_seconds = time.perf_counter() - start
+    built = timed_build(context, [ox.BuildInputTriangles(scene.vertices, scene.indices)])
 
     table = ox.ShaderBindingTable(raygen=raygen.record(), miss=[nothing.record(), clear.record()], hitgroup=[surface.record()])
     image = np.zeros((height, width, 4), np.float32)
@@ -88,33 +77,19 @@ def render(scene: Scene, width: int, height: int, samples: int, occlusion_rays: 
     params = shader.Params(
         image=image,
         ray_counts=ray_counts,
-        scene=accel,
-        camera=pinhole(scene, width / height),
+        scene=built.accel,
+        camera=pinhole(scene.eye, scene.eye + scene.forward, scene.vertical_fov, width / height),
         sample=0,
         samples=samples,
         occlusion_rays=occlusion_rays,
         radius=scene.radius,
     )
-    start = time.perf_counter()
-    for sample in tqdm(range(samples), desc="ambient occlusion", unit="sample", delay=2.0, disable=None, leave=False):
-        params.sample = sample
-        pipeline.launch(params, table, width=width, height=height)
-    seconds = time.perf_counter() - start
+    seconds = accumulate(pipeline, params, table, (width, height), "ambient occlusion")
     if verbose:
         rays = int(ray_counts.sum(dtype=np.uint64))
         print(f"  {len(scene.indices)} triangles, {width} x {height} pixels, {samples} x (1 + {occlusion_rays}) rays each")
-        print_statistics(context, pipeline, build_seconds, rays, seconds)
+        print_statistics(context, pipeline, built.seconds, rays, seconds)
     return image
-
-
-def print_statistics(context: ox.DeviceContext, pipeline: ox.Pipeline, build_seconds: float, rays: int, seconds: float) -> None:
-    """What the compiler, the build and the launches took."""
-    report = pipeline.report()
-    print(f"  compile  {report.compile_seconds:.3f} s{' (from the cache)' if report.cache_hit else ''}")
-    print(f"  build    {build_seconds:.3f} s")
-    rate = f"{rays / seconds / 1e6:.2f} Mrays/s on {context.info()['threads']} threads"
-    print(f"  trace    {rays / 1e6:.1f} million rays in {seconds:.2f} s: {rate}")
-    print(f"  memory   {resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024.0:.0f} MiB at most")
 
 
 def main() -> None:

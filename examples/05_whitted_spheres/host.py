@@ -3,33 +3,23 @@
 from __future__ import annotations
 
 import argparse
-import resource
-import time
+import sys
 from pathlib import Path
 
 import numpy as np
 import shader
-from tqdm import tqdm
 
 import optixc as ox
-from optixc.stdlib.camera import Pinhole
 
-EYE = np.array([7.0, 2.7, -6.2])
-TARGET = np.array([2.9, 1.05, 1.2])
+sys.path.append(str(Path(__file__).resolve().parents[1]))
+from rendering import Build, accumulate, pinhole, print_statistics, timed_build
+
+EYE = (7.0, 2.7, -6.2)
+TARGET = (2.9, 1.05, 1.2)
 VERTICAL_FOV = 40.0
 LIGHT_POSITION = (26.0, 26.0, 2.0)
 LIGHT_COLOR = (0.85, 0.82, 0.75)
 AMBIENT_COLOR = (0.30, 0.33, 0.38)
-
-
-def pinhole(aspect: float) -> Pinhole:
-    """The camera as half axes of its image plane."""
-    w = TARGET - EYE
-    right = np.cross(w, [0.0, 1.0, 0.0])
-    right /= np.linalg.norm(right)
-    up = np.cross(right, w) / np.linalg.norm(w)
-    half_height = np.linalg.norm(w) * np.tan(np.radians(0.5 * VERTICAL_FOV))
-    return Pinhole(eye=EYE, u=half_height * aspect * right, v=half_height * up, w=w)
 
 
 def sphere_boxes(centers: np.ndarray, radii: np.ndarray) -> np.ndarray:
@@ -73,7 +63,7 @@ def build_scene(
     metal: shader.MetalBall,
     glass: shader.GlassShell,
     plastic: shader.PlasticBalls,
-) -> ox.Accel:
+) -> Build:
     """One acceleration structure of four build inputs; each has two records, one per type of rays."""
     corners = np.array([floor.anchor + a * floor.edge_u + b * floor.edge_v for a in (0.0, 1.0) for b in (0.0, 1.0)])
     boxes = [
@@ -82,7 +72,7 @@ def build_scene(
         sphere_boxes(np.array([glass.center]), np.array([glass.outer_radius])),
         sphere_boxes(plastic.spheres[:, :3], plastic.spheres[:, 3]),
     ]
-    return context.accel_build([ox.BuildInputCustomPrimitives(box) for box in boxes])
+    return timed_build(context, [ox.BuildInputCustomPrimitives(box) for box in boxes])
 
 
 def render(width: int, height: int, samples: int, *, verbose: bool = False) -> np.ndarray:
@@ -102,9 +92,7 @@ def render(width: int, height: int, samples: int, *, verbose: bool = False) -> n
     pipeline = context.pipeline_create([raygen, *misses, *radiance, *shadow], max_trace_depth=shader.MAX_DEPTH + 2)
 
     floor, metal, glass, plastic = objects()
-    start = time.perf_counter()
-    scene = build_scene(context, floor, metal, glass, plastic)
-    build_seconds = time.perf_counter() - start
+    built = build_scene(context, floor, metal, glass, plastic)
 
     records = []
     for radiance_group, shadow_group, data in zip(radiance, shadow, [floor, metal, glass, plastic], strict=True):
@@ -115,34 +103,20 @@ def render(width: int, height: int, samples: int, *, verbose: bool = False) -> n
     params = shader.Params(
         image=image,
         ray_counts=ray_counts,
-        scene=scene,
-        camera=pinhole(width / height),
+        scene=built.accel,
+        camera=pinhole(EYE, TARGET, VERTICAL_FOV, width / height),
         sample=0,
         samples=samples,
         light_position=LIGHT_POSITION,
         light_color=LIGHT_COLOR,
         ambient_color=AMBIENT_COLOR,
     )
-    start = time.perf_counter()
-    for sample in tqdm(range(samples), desc="Whitted's spheres", unit="sample", delay=2.0, disable=None, leave=False):
-        params.sample = sample
-        pipeline.launch(params, table, width=width, height=height)
-    seconds = time.perf_counter() - start
+    seconds = accumulate(pipeline, params, table, (width, height), "Whitted's spheres")
     if verbose:
         rays = int(ray_counts.sum(dtype=np.uint64))
         print(f"  {len(plastic.spheres) + 3} custom primitives, {width} x {height} pixels, {samples} samples each")
-        print_statistics(context, pipeline, build_seconds, rays, seconds)
+        print_statistics(context, pipeline, built.seconds, rays, seconds)
     return image
-
-
-def print_statistics(context: ox.DeviceContext, pipeline: ox.Pipeline, build_seconds: float, rays: int, seconds: float) -> None:
-    """What the compiler, the build and the launches took."""
-    report = pipeline.report()
-    print(f"  compile  {report.compile_seconds:.3f} s{' (from the cache)' if report.cache_hit else ''}")
-    print(f"  build    {build_seconds:.3f} s")
-    rate = f"{rays / seconds / 1e6:.2f} Mrays/s on {context.info()['threads']} threads"
-    print(f"  trace    {rays / 1e6:.1f} million rays in {seconds:.2f} s: {rate}")
-    print(f"  memory   {resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024.0:.0f} MiB at most")
 
 
 def main() -> None:
