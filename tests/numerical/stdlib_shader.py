@@ -2,7 +2,7 @@
 
 import optixc as ox
 from optixc import float3, float4, uint2, uint4, uint32, uint64
-from optixc.stdlib import bsdf, environment, light, microfacet, principled, random, sampling
+from optixc.stdlib import bsdf, curves, environment, hair, light, microfacet, principled, random, sampling
 
 
 @ox.struct
@@ -289,3 +289,41 @@ def __raygen__sample_environment(map: environment.EnvironmentMap):
 def __raygen__pdf_environment(map: environment.EnvironmentMap):
     w = load().xyz
     store(environment.environment_radiance(map, w), environment.environment_pdf(map, w))
+
+
+@ox.device
+def fibre() -> hair.Hair:
+    """b: roughness along and across, tilt, absorption."""
+    return hair.Hair(float3(params.b.w), params.b.x, params.b.y, params.b.z, 1.55)
+
+
+@ox.program
+def __raygen__sample_hair():
+    """a: wo and h."""
+    u = load()
+    sample = hair.hair_sample(fibre(), params.a.w, params.a.xyz, u.xy, u.zw)
+    store(sample.wi, sample.pdf)
+
+
+@ox.program
+def __raygen__pdf_hair():
+    wi = load().xyz
+    store(hair.hair_eval(fibre(), params.a.w, params.a.xyz, wi), hair.hair_pdf(fibre(), params.a.w, params.a.xyz, wi))
+
+
+@ox.program
+def __raygen__weight_hair():
+    u = load()
+    store(hair.hair_sample(fibre(), params.a.w, params.a.xyz, u.xy, u.zw).weight, 0.0)
+
+
+@ox.program
+def __raygen__cubic_bspline():
+    """Row: parameter. The control points are a corner of the unit cube each, with radii 1 to 4."""
+    p = (float4(0.0, 0.0, 0.0, 1.0), float4(1.0, 0.0, 0.0, 2.0), float4(1.0, 1.0, 0.0, 3.0), float4(1.0, 1.0, 1.0, 4.0))
+    u = load().x
+    if params.a.x == 0.0:
+        point = curves.cubic_bspline_point(p, u) if params.a.y == 0.0 else curves.catmull_rom_point(p, u)
+        store(point.xyz, point.w)
+    else:
+        store(curves.cubic_bspline_tangent(p, u) if params.a.y == 0.0 else curves.catmull_rom_tangent(p, u), 0.0)
