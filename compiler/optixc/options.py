@@ -41,7 +41,7 @@ class PipelineCompileOptions:
         for name, limit in (*counts, ("exception_flags", 7), ("traversable_graph_flags", 3)):
             value = getattr(self, name)
             may_be_absent = value is None and (name, limit) in counts
-            if not may_be_absent and (not isinstance(value, int) or not 0 <= value <= limit):
+            if not may_be_absent and (not isinstance(value, int) or isinstance(value, bool) or not 0 <= value <= limit):
                 raise InvalidValueError(f"{name} must be 0 to {limit}, not {value!r}")
         for name in ("uses_motion_blur", "allow_opacity_micromaps", "allow_clustered_geometry"):
             if getattr(self, name) not in (False, True):
@@ -63,7 +63,7 @@ class CompileOptions:
     bound_values: Mapping[str, BoundValue] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
-        if self.simd not in ("auto", 1, 8, 16):
+        if isinstance(self.simd, bool) or self.simd not in ("auto", 1, 8, 16):
             raise InvalidValueError(f'simd must be "auto", 1, 8 or 16, not {self.simd!r}')
         if self.math not in ("precise", "fast"):
             raise InvalidValueError(f'math must be "precise" or "fast", not {self.math!r}')
@@ -71,8 +71,11 @@ class CompileOptions:
             raise InvalidValueError(f"target must be one of {', '.join(TARGETS)}, not {self.target!r}")
         if self.optimization not in (0, 1, 2, 3):
             raise InvalidValueError(f"the optimisation level must be 0 to 3, not {self.optimization!r}")
-        if not isinstance(self.max_trace_depth, int) or not 0 <= self.max_trace_depth <= MAX_TRACE_DEPTH:
+        if not isinstance(self.max_trace_depth, int) or isinstance(self.max_trace_depth, bool) or not 0 <= self.max_trace_depth <= MAX_TRACE_DEPTH:
             raise InvalidValueError(f"max_trace_depth must be 0 to {MAX_TRACE_DEPTH}, not {self.max_trace_depth!r}")
+        for name in ("debug", "validation"):
+            if not isinstance(getattr(self, name), bool):
+                raise InvalidValueError(f"{name} must be False or True, not {getattr(self, name)!r}")
 
     def key(self) -> str:
         """A text that is equal exactly for equal options."""

@@ -34,7 +34,7 @@ def mode_of(probe: Probe) -> int:
 
 def check_hit_objects(harness: Harness, probe: Probe) -> None:
     """States and log are the recorded ones, in order."""
-    states, log = _run(harness, mode_of(probe))
+    states, log = look_and_invoke(harness, mode_of(probe))
     assert [state["tag"] for state in states] == [state["tag"] for state in probe.data["states"]]
     for ours, recorded in zip(states, probe.data["states"], strict=True):
         _same(ours, recorded)
@@ -55,7 +55,8 @@ def _same(ours: dict[str, Any], recorded: dict[str, Any]) -> None:
             assert ours[key] == value, (key, ours, recorded)
 
 
-def _run(harness: Harness, mode: int) -> tuple[list[dict[str, Any]], list[dict[str, Any]]]:
+def look_and_invoke(harness: Harness, mode: int) -> tuple[list[dict[str, Any]], list[dict[str, Any]]]:
+    """The states of the hit object and the calls of programs that one mode of the ray generation program writes down."""
     groups, pipeline = _pipeline(harness)
     build = harness.context.accel_build
     corners = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [2, 0, 0], [3, 0, 0], [2, 1, 0]], np.float32)

@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 from harness import SHADERS
 from shaders import bound as shader
+from shaders import host_checks
 
 import optixc as ox
 
@@ -218,3 +219,46 @@ def test_T039_a_module_whose_task_executes_is_not_destroyed() -> None:
     leave.set()
     thread.join()
     module.destroy()
+
+
+def test_T065_T068_groups_of_all_kinds(tmp_path: Path) -> None:
+    kinds = ("raygen", "miss", "exception", "closesthit", "direct_callable")
+    path = tmp_path / "kinds.py"
+    path.write_text("import optixc as ox\n" + "".join(f"\n\n@ox.program\ndef __{kind}__p():\n    pass\n" for kind in kinds))
+    context = ox.DeviceContext()
+    module = context.module_create(path)
+    groups = [context.program_group_create(**{kind: module[f"__{kind}__p"]}) for kind in kinds]
+    assert [group.kind.name for group in groups] == ["RAYGEN", "MISS", "EXCEPTION", "HITGROUP", "CALLABLES"]
+    context.pipeline_create(groups)
+    neither = {"direct_callable": None, "continuation_callable": None}
+    for empty in ({"direct_callable": None}, neither, {"raygen": None}, {"exception": None}):
+        with pytest.raises(ox.InvalidValueError, match="needs a program"):
+            context.program_group_create(**empty)
+    for mixed in ({"raygen": module["__raygen__p"], "miss": module["__miss__p"]}, {}):
+        with pytest.raises(ox.InvalidValueError, match="a program group is one of"):
+            context.program_group_create(**mixed)
+
+
+def test_T070_trace_depths() -> None:
+    context = ox.DeviceContext()
+    module = context.module_create(SHADER)
+    group = context.program_group_create(raygen=module["__raygen__branch"])
+    for depth in (32, -1, 1.5, "1", None, True):
+        with pytest.raises(ox.InvalidValueError, match="max_trace_depth must be 0 to 31"):
+            context.pipeline_create([group], max_trace_depth=depth)
+    for depth in (0, 31):
+        out = np.zeros(1, np.float32)
+        pipeline = context.pipeline_create([group], max_trace_depth=depth)
+        pipeline.launch(shader.Params(out=out, k=3, light=LIGHT), ox.ShaderBindingTable(raygen=group.record()), 1)
+        assert out[0] > 1000
+
+
+@pytest.mark.parametrize("simd", [1, 8, 16])
+def test_T070_depth_0_traces_nothing(simd: int) -> None:
+    context = ox.DeviceContext()
+    module, create = context.module_create(SHADERS / "host_checks.py"), context.program_group_create
+    raygen, miss = create(raygen=module["__raygen__rays"]), create(miss=module["__miss__nothing"])
+    pipeline = context.pipeline_create([raygen, miss], max_trace_depth=0, simd=simd)
+    table = ox.ShaderBindingTable(raygen=raygen.record(), miss=[miss.record()])
+    with pytest.raises(ox.LaunchFailureError, match="traces nest deeper than max_trace_depth"):
+        pipeline.launch(host_checks.Params(np.zeros(4, np.float32), 0, 1.0), table, 4)

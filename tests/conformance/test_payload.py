@@ -11,7 +11,7 @@ import optixc as ox
 
 CORNERS = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0]], np.float32)
 BEFORE = [10, 11, 12, 13, 14, 15, 16, 17]
-CLOSEST_HITS = ("third", "by_number", "three", "copy_first", "nested")
+CLOSEST_HITS = ("third", "by_number", "three", "copy_first", "nested", "scratch", "undefined")
 
 
 def run(harness: Harness, closesthit: str | None = None, anyhit: bool = False, mode: int = 0, layers: int = 1, flags: int = 0,
@@ -31,7 +31,9 @@ def run(harness: Harness, closesthit: str | None = None, anyhit: bool = False, m
     levels = np.concatenate([CORNERS - (0, 0, level) for level in range(layers)]).astype(np.float32) if layers else CORNERS + 50
     scene = harness.context.accel_build([ox.BuildInputTriangles(levels, flags=geometry_flags)])
     out = np.zeros((1, 8), np.uint32)
-    params = shader.Params(scene=scene.handle, out=out, mode=np.array([mode], np.uint32), ray_flags=flags)
+    params = shader.Params(scene=scene.handle, out=out, mode=np.array([mode], np.uint32), ray_flags=flags,
+                           scratch=np.zeros((1, 4), np.uint32))
+    params.scratch[0, :3] = BEFORE[:3]
     sbt = ox.ShaderBindingTable(raygen=groups["raygen", raygen].record(), miss=[groups["miss", miss].record()],
                                 hitgroup=[groups[closesthit, anyhit].record()])
     harness.launch(pipeline, params, sbt, 1)
@@ -81,3 +83,13 @@ def test_T066_an_empty_miss_group_changes_nothing(harness: Harness) -> None:
 
 def test_T067_an_empty_hit_group_is_a_hit_without_programs(harness: Harness) -> None:
     assert run(harness) == BEFORE
+
+
+def test_T056_a_hit_program_writes_memory_of_its_caller(harness: Harness) -> None:
+    # Where OptiX packs a pointer into two words, a payload carries the row of an array that the caller works on.
+    assert run(harness, "scratch") == [10, 11, 12, 13, 14, 15, 16, 10 + 11 + 12]
+
+
+def test_T064_an_undefined_word_leaves_the_others_alone(harness: Harness) -> None:
+    words = run(harness, "undefined")
+    assert words[:5] + words[6:] == [10, 11, 12, 13, 14, 16, 17]

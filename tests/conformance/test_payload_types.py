@@ -95,3 +95,34 @@ def test_a_payload_that_no_program_takes_is_a_fault_in_validation(tmp_path: Path
 def test_functions_with_the_optix_enabled_prefix_are_helpers(tmp_path: Path) -> None:
     create(tmp_path, "def __optix_enabled__index() -> uint32:\n    return ox.get_launch_index().x\n\n\n@ox.program\ndef __raygen__r():\n"
            "    i = __optix_enabled__index()\n")
+
+
+TWO = ("@ox.payload\nclass A:\n    a: float\n\n\n@ox.payload\nclass B:\n    a: uint32\n\n\n@ox.program\ndef __closesthit__a(p: A):\n"
+       "    p.a = 1.0\n\n\n@ox.program\ndef __anyhit__b(p: B):\n    p.a += 1\n\n\n@ox.program\ndef __anyhit__any():\n"
+       "    ox.set_payload_types(ox.PayloadTypeID.ID_0 | ox.PayloadTypeID.ID_1)\n    ox.set_payload_0(ox.get_payload_0() + 1)\n\n\n")
+
+
+def test_T060_a_group_of_one_payload(tmp_path: Path) -> None:
+    module = create(tmp_path, TWO)
+    context = ox.DeviceContext()
+    context.program_group_create(closesthit=module["__closesthit__a"], anyhit=module["__anyhit__any"])
+    with pytest.raises(ox.PayloadTypeResolutionFailedError, match="__closesthit__a takes a A payload and __anyhit__b a B") as caught:
+        context.program_group_create(closesthit=module["__closesthit__a"], anyhit=module["__anyhit__b"])
+    assert caught.value.code == 7501
+
+
+@pytest.mark.parametrize("payload", ["3", "A", "ray if ox.get_launch_index().x > 3 else ray", "other", "(ray, ray)"])
+def test_T062_the_payload_of_a_trace_is_known_to_the_compiler(tmp_path: Path, payload: str) -> None:
+    raygen = ("@ox.struct\nclass S:\n    a: float\n\n\n@ox.program\ndef __raygen__r():\n    ray = A(0.0)\n    other = S(0.0)\n"
+              "    ox.trace(ox.Traversable(0), float3(0.0), float3(1.0), payload={})\n")
+    create(tmp_path, TWO + raygen.format("ray"))
+    with pytest.raises(ox.CompileError, match="payload"):
+        create(tmp_path, TWO + raygen.format(payload))
+
+
+def test_T063_payload_types_are_not_conditional(tmp_path: Path) -> None:
+    text = "@ox.program\ndef __miss__m():\n    if ox.get_ray_tmin() > 0.5:\n        ox.set_payload_types({})\n"
+    with pytest.raises(ox.CompileError, match="must be the first statement"):
+        create(tmp_path, text.format("1"))
+    with pytest.raises(ox.CompileError, match="takes a constant"):
+        create(tmp_path, "@ox.program\ndef __miss__m():\n    ox.set_payload_types(ox.get_payload_0())\n")

@@ -7,11 +7,13 @@ from typing import Any
 
 import numpy as np
 import pytest
-from harness import Harness
+from harness import SHADERS, Harness
 from scenes import CORNER, calls, closest, gas, hitgroup, ias, instance, offsets, ray, trace, translation, triangles
+from shaders import callable_arguments
 from shaders import launch as shader
 
 import optixc as ox
+from optixc.host import library
 
 CORNERS = np.array(CORNER, np.float32)
 
@@ -154,3 +156,79 @@ def test_T093_launches_from_two_threads(harness: Harness) -> None:
     for thread in threads:
         thread.join()
     assert all(np.array_equal(found[value], np.arange(1024) + value) for value in (1000, 2000))
+
+
+def test_T086_offsets_of_nested_instances_add_up(harness: Harness) -> None:
+    # Recorded: 05_instances, six levels with offsets 1 to 32 reach record 63.
+    far = [[(x + 2 * k, y, z) for x, y, z in CORNER] for k in range(3)]
+    scene = [gas(triangles(far, (0, 0, 0), **offsets([0, 1, 2]))), ias(instance(sbt_offset=5), name="inner"),
+             ias(instance("inner", sbt_offset=3), name="outer")]
+    given = ray((2 * 2 + 0.25, 0.25, 1.0), root="outer", sbt_offset=1, sbt_stride=1)
+    (result,) = trace(harness, scene, [given], [hitgroup(index) for index in range(12)])
+    assert closest(result)["rec"] == 3 + 5 + 2 + 1
+
+
+def test_T069_one_group_in_two_tables_and_pipelines(harness: Harness) -> None:
+    groups = groups_of(harness)
+    shared = [groups["trace"], groups["data"], groups["miss"]]
+    second = harness.pipeline("launch again", shared)
+    scene = harness.context.accel_build([ox.BuildInputTriangles(CORNERS)])
+    for number, pipeline in enumerate((pipeline_of(harness), second, pipeline_of(harness))):
+        indices = np.zeros(1, np.uint32)
+        table = ox.ShaderBindingTable(raygen=groups["trace"].record(), miss=[groups["miss"].record()],
+                                      hitgroup=[groups["data"].record(shader.Data(number, 0.0, (0, 0, 0)))])
+        params = shader.Params(indices=indices, dimensions=indices, scene=scene.handle, value=0)
+        harness.launch(pipeline, params, table, 1)
+        assert indices[0] == number
+        # the same table with the other pipeline: its headers are written for both
+        harness.launch(second if pipeline is not second else pipeline_of(harness), params, table, 1)
+        assert indices[0] == number
+
+
+TABLE_MISTAKES = {
+    "base off by 8": (lambda table: setattr(table, "missRecords", table.missRecords + 8), "not aligned to 16 bytes"),
+    "raygen off by 4": (lambda table: setattr(table, "raygenRecord", table.raygenRecord + 4), "not aligned to 16 bytes"),
+    "stride 40": (lambda table: setattr(table, "hitgroupStride", 40), "multiple of 16 of at least 32"),
+    "stride 0": (lambda table: setattr(table, "missStride", 0), "multiple of 16 of at least 32"),
+    "stride 16": (lambda table: setattr(table, "callableStride", 16), "multiple of 16 of at least 32"),
+    "count without base": (lambda table: setattr(table, "callableRecords", library.ffi().NULL), "but their pointer is NULL"),
+    "no raygen record": (lambda table: setattr(table, "raygenRecord", library.ffi().NULL), "raygenRecord is NULL"),
+    "another group's kind": (lambda table: setattr(table, "raygenRecord", table.missRecords), "another kind"),
+}
+
+
+@pytest.mark.parametrize("mistake", TABLE_MISTAKES)
+def test_T081_tables_of_the_c_interface(mistake: str) -> None:
+    # Python lays tables out itself, so these can be made through the C interface only.
+    context = ox.DeviceContext()
+    module, create = context.module_create(SHADERS / "callable_arguments.py"), context.program_group_create
+    raygen = create(raygen=module["__raygen__call"])
+    plus, miss, hit = create(direct_callable=module["__direct_callable__plus"]), create(miss=None), create(closesthit=None)
+    pipeline = context.pipeline_create([raygen, plus, miss, hit])
+    table = ox.ShaderBindingTable(raygen=raygen.record(), miss=[miss.record()] * 2, hitgroup=[hit.record()] * 3,
+                                  callables=[plus.record(callable_arguments.Factor(1))] * 3)
+    out = np.zeros(1, np.float32)
+    params = callable_arguments.Params(out=out, records=np.zeros(1, np.uint32), x=7.0)
+    handle, data, size, c_table = pipeline.launch_inputs(params, table)
+    lib = library.lib()
+    assert lib.oxrtLaunch(handle, data, size, c_table, 1, 1, 1) == 0
+    assert out[0] == 8
+    out[0] = 0
+    change, message = TABLE_MISTAKES[mistake]
+    change(ByteTable(c_table))
+    assert lib.oxrtLaunch(handle, data, size, c_table, 1, 1, 1) == ox.InvalidValueError.code
+    assert message in library.last_message()
+    assert out[0] == 0
+
+
+class ByteTable:
+    """A table whose record pointers can be added to."""
+
+    def __init__(self, table: Any) -> None:
+        object.__setattr__(self, "_table", table)
+
+    def __getattr__(self, name: str) -> Any:
+        return library.ffi().cast("char*", getattr(self._table, name))
+
+    def __setattr__(self, name: str, value: Any) -> None:
+        setattr(self._table, name, value)

@@ -21,8 +21,8 @@ LINES = (SHADERS / "faults.py").read_text().splitlines()
 GROUPS: dict[str, dict[str, str]] = {
     "faults": {"raygen": "__raygen__faults"}, "pair raygen": {"raygen": "__raygen__pair"},
     "word": {"closesthit": "__closesthit__word"}, "pair": {"closesthit": "__closesthit__pair"},
-    "number": {"closesthit": "__closesthit__number"}, "anyhit pair": {"closesthit": "__closesthit__word", "anyhit": "__anyhit__pair"},
-    "box pair": {"closesthit": "__closesthit__word", "intersection": "__intersection__pair"},
+    "number": {"closesthit": "__closesthit__number"}, "anyhit pair": {"anyhit": "__anyhit__pair"},
+    "box pair": {"intersection": "__intersection__pair"},
     "miss": {"miss": "__miss__word"}, "miss pair": {"miss": "__miss__pair"},
     "direct": {"direct_callable": "__direct_callable__one"}, "continuation": {"continuation_callable": "__continuation_callable__one"},
     "float": {"direct_callable": "__direct_callable__float"}, "exception": {"exception": "__exception__note"}}
@@ -111,7 +111,8 @@ FAULTS = {
     "payload of a miss": Fault(-33, "another payload", TRACE, {"miss_index": 1, "origin": (50.0, 50.0, 5.0)}),
     "nesting": Fault(-2, "nest deeper than max_trace_depth", TRACE, {"mode": shader.NESTED}),
     "read": Fault(2, r"index out of range \(0, 5\)", "params.numbers[0, ray.index]", {"mode": shader.READ, "index": 5}, "__raygen__faults"),
-    "read in a helper": Fault(2, r"index out of range \(0, 6\)", "return params.numbers", {"mode": shader.READ_IN_HELPER, "index": 6}, "read"),
+    "read in a helper": Fault(2, r"index out of range \(0, 6\)", "return params.numbers", {"mode": shader.READ_IN_HELPER, "index": 6},
+                              "read"),
     "write": Fault(2, r"index out of range \(4, 0\)", "params.numbers[ray.index, 0] = 5", {"mode": shader.WRITE, "index": 4},
                    "__raygen__faults"),
     "atomic": Fault(2, r"index out of range \(0, 4294967295\)", "ox.atomic_add", {"mode": shader.ATOMIC, "index": 0xffffffff},

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from optixc.enums_program import ModuleCompileState, ProgramGroupKind
-from optixc.errors import InvalidOperationError, InvalidValueError
+from optixc.errors import InvalidOperationError, InvalidValueError, PayloadTypeResolutionFailedError
 from optixc.host import structs
 from optixc.host.stack_sizes import StackSizes, sizes_of
 
@@ -41,6 +41,8 @@ class Program:
     record: str | None
     record_name: str | None
     stack: int = 0
+    payload: str | None = None
+    payload_name: str | None = None
 
 
 class Module(Mapping[str, Program]):
@@ -50,7 +52,8 @@ class Module(Mapping[str, Program]):
         self.unit = unit
         self.bound_values = dict(bound_values or {})
         self._is_destroyed = False
-        self._programs = {one["name"]: Program(self, one["name"], one["record"], one["record_name"], one["stack"]) for one in programs}
+        members = ("name", "record", "record_name", "stack", "payload", "payload_name")
+        self._programs = {one["name"]: Program(self, *(one[member] for member in members)) for one in programs}
 
     def get_compilation_state(self) -> ModuleCompileState:
         """COMPLETED; see `module_create_with_tasks`."""
@@ -97,6 +100,17 @@ class ProgramGroup:
         self._pipelines: weakref.WeakSet[Any] = weakref.WeakSet()
         if not self.programs and self.kind not in _MAY_BE_EMPTY:
             raise InvalidValueError(f"a group of kind {self.kind.name} needs a program")
+        self._check_payloads()
+
+    def _check_payloads(self) -> None:
+        """No trace could run all programs of a group that take different payloads."""
+        taking = [program for program in self.programs.values() if program.payload is not None]
+        other = next((program for program in taking if program.payload != taking[0].payload), None)
+        if other is not None:
+            raise PayloadTypeResolutionFailedError(
+                f"{taking[0].name} takes a {taking[0].payload_name} payload and {other.name} a {other.payload_name}: no trace runs both; "
+                "give the programs of a group one payload class"
+            )
 
     def record(self, data: Any = None) -> Record:
         """A record that runs this group, with `data`, an instance of the struct that its programs take."""

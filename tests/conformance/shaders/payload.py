@@ -14,6 +14,7 @@ class Params:
     out: Array2[uint32]
     mode: Array[uint32]
     ray_flags: uint32
+    scratch: Array2[uint32]
 
 
 @ox.payload
@@ -53,6 +54,7 @@ def __raygen__eight():
     index = ox.get_launch_index().x
     words = Eight(10, 11, 12, 13, 14, 15, 16, 17)
     start(words)
+    words.w7 += params.scratch[index, 3]
     put(index, words)
 
 
@@ -92,6 +94,18 @@ def __closesthit__nested(words: Eight):
     if words.w0 < 12:
         start(inner)
     words.w2 = words.w2 + inner.w0 + 100 * words.w0
+
+
+@ox.program
+def __closesthit__scratch(words: Eight):
+    row = ox.get_launch_index().x
+    params.scratch[row, 3] = params.scratch[row, 0] + params.scratch[row, 1] + params.scratch[row, 2]
+    words.w7 = 0
+
+
+@ox.program
+def __closesthit__undefined():
+    ox.set_payload_5(ox.undefined_value())
 
 
 @ox.program
