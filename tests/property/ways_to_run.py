@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -46,12 +45,15 @@ def inputs() -> Outputs:
 
 
 class Ways:
-    """One context; `compile` makes a module's pipeline at a level of the C++ compiler's optimisation, `run` runs one of its programs."""
+    """One context; `compile` makes a module's pipelines, `run` runs one of its programs. `optimization` is the C++ compiler's level."""
 
-    def __init__(self, folder: Path, monkeypatch: pytest.MonkeyPatch, optimization: int) -> None:
+    def __init__(self, folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
         self.folder = folder
-        self.context = ox.DeviceContext(threads=1, cache_dir=folder / "cache")
-        monkeypatch.setattr(api, "CompileOptions", partial(CompileOptions, optimization=optimization))
+        self.optimization = 0
+        # Nothing is compiled twice, so nothing is kept.
+        monkeypatch.setenv("OPTIXC_CACHE_MAXSIZE", "0")
+        self.context = ox.DeviceContext(threads=1)
+        monkeypatch.setattr(api, "CompileOptions", self._options)
         self.inputs = inputs()
         self.count = 0
         self.lanes = {"lanes8": 8, "lanes16": 16}
@@ -63,12 +65,19 @@ class Ways:
         path.write_text(text)
         return path
 
-    def compile(self, path: Path, names: list[str], lanes: int) -> tuple[Any, dict[str, Any]]:
-        """Pipeline and table of each program."""
+    def _options(self, **options: Any) -> CompileOptions:
+        return CompileOptions(**options, optimization=self.optimization)
+
+    def compile(self, path: Path, names: list[str]) -> tuple[Any, dict[str, Any], list[Any]]:
+        """Scalar pipeline, table of each program, and the program groups."""
         module = self.context.module_create(path)
         groups = {name: self.context.program_group_create(raygen=module[name]) for name in names}
-        pipeline = self.context.pipeline_create(list(groups.values()), simd=lanes)
-        return pipeline, {name: ox.ShaderBindingTable(raygen=group.record()) for name, group in groups.items()}
+        tables = {name: ox.ShaderBindingTable(raygen=group.record()) for name, group in groups.items()}
+        return self.pipeline(list(groups.values()), 1), tables, list(groups.values())
+
+    def pipeline(self, groups: list[Any], lanes: int) -> Any:
+        """The same programs in another width."""
+        return self.context.pipeline_create(groups, simd=lanes)
 
     def run(self, pipeline: Any, table: Any, params_class: type[Any], launch: Callable[..., None] | None = None) -> Outputs:
         """What one program writes."""

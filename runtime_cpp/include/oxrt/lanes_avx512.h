@@ -28,33 +28,32 @@ template <> struct NativeVector<uint64_t, 16> { using Type = NativeUlong8; };
 
 /* ---- comparisons: a mask bit per lane ----------------------------------------------------------------------------------------- */
 
-constexpr int floatPredicate(Compare c) {
-    return c == Compare::EQUAL ? 0 : c == Compare::NOT_EQUAL ? 4 : c == Compare::LESS ? 17 : c == Compare::LESS_EQUAL ? 18
-        : c == Compare::GREATER ? 30 : 29;
-}
-constexpr int integerPredicate(Compare c) {
-    return c == Compare::EQUAL ? 0 : c == Compare::NOT_EQUAL ? 4 : c == Compare::LESS ? 1 : c == Compare::LESS_EQUAL ? 2
-        : c == Compare::GREATER ? 6 : 5;
-}
+/* Variables, because g++ without optimisation takes no call of a function as an immediate. */
+template <Compare C>
+constexpr int FLOAT_PREDICATE = C == Compare::EQUAL ? 0 : C == Compare::NOT_EQUAL ? 4 : C == Compare::LESS ? 17
+    : C == Compare::LESS_EQUAL ? 18 : C == Compare::GREATER ? 30 : 29;
+template <Compare C>
+constexpr int INTEGER_PREDICATE = C == Compare::EQUAL ? 0 : C == Compare::NOT_EQUAL ? 4 : C == Compare::LESS ? 1
+    : C == Compare::LESS_EQUAL ? 2 : C == Compare::GREATER ? 6 : 5;
 enum { CURRENT_ROUNDING = 4 };
 
 template <Compare C> OXRT_INLINE uint16_t compareNative(NativeFloat16 a, NativeFloat16 b) {
-    return uint16_t(__builtin_ia32_cmpps512_mask(a, b, floatPredicate(C), uint16_t(0xffff), CURRENT_ROUNDING));
+    return uint16_t(__builtin_ia32_cmpps512_mask(a, b, FLOAT_PREDICATE<C>, uint16_t(0xffff), CURRENT_ROUNDING));
 }
 template <Compare C> OXRT_INLINE uint16_t compareNative(NativeInt16 a, NativeInt16 b) {
-    return uint16_t(__builtin_ia32_cmpd512_mask(a, b, integerPredicate(C), uint16_t(0xffff)));
+    return uint16_t(__builtin_ia32_cmpd512_mask(a, b, INTEGER_PREDICATE<C>, uint16_t(0xffff)));
 }
 template <Compare C> OXRT_INLINE uint16_t compareNative(NativeUint16 a, NativeUint16 b) {
-    return uint16_t(__builtin_ia32_ucmpd512_mask(NativeInt16(a), NativeInt16(b), integerPredicate(C), uint16_t(0xffff)));
+    return uint16_t(__builtin_ia32_ucmpd512_mask(NativeInt16(a), NativeInt16(b), INTEGER_PREDICATE<C>, uint16_t(0xffff)));
 }
 template <Compare C> OXRT_INLINE uint8_t compareNative(NativeDouble8 a, NativeDouble8 b) {
-    return uint8_t(__builtin_ia32_cmppd512_mask(a, b, floatPredicate(C), uint8_t(0xff), CURRENT_ROUNDING));
+    return uint8_t(__builtin_ia32_cmppd512_mask(a, b, FLOAT_PREDICATE<C>, uint8_t(0xff), CURRENT_ROUNDING));
 }
 template <Compare C> OXRT_INLINE uint8_t compareNative(NativeLong8 a, NativeLong8 b) {
-    return uint8_t(__builtin_ia32_cmpq512_mask(NativeLongLong8(a), NativeLongLong8(b), integerPredicate(C), uint8_t(0xff)));
+    return uint8_t(__builtin_ia32_cmpq512_mask(NativeLongLong8(a), NativeLongLong8(b), INTEGER_PREDICATE<C>, uint8_t(0xff)));
 }
 template <Compare C> OXRT_INLINE uint8_t compareNative(NativeUlong8 a, NativeUlong8 b) {
-    return uint8_t(__builtin_ia32_ucmpq512_mask(NativeLongLong8(a), NativeLongLong8(b), integerPredicate(C), uint8_t(0xff)));
+    return uint8_t(__builtin_ia32_ucmpq512_mask(NativeLongLong8(a), NativeLongLong8(b), INTEGER_PREDICATE<C>, uint8_t(0xff)));
 }
 
 /* The masks of the two registers that hold 64-bit lanes, and back. */
