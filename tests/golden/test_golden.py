@@ -102,3 +102,12 @@ def test_output_compiles_without_a_warning(case: str, compiler: str) -> None:
         command = [compiler, *FLAGS, f"-I{include_folder()}", str(path)]
         result = subprocess.run(command, capture_output=True, text=True, check=False)
         assert result.returncode == 0, result.stderr[:4000]
+
+
+@pytest.mark.parametrize("compiler", COMPILERS)
+def test_packets_compile_without_optimisation(compiler: str, tmp_path: Path) -> None:
+    """Instructions take immediates, which a compiler that folds nothing must still see as constants."""
+    command = [compiler, *(flag for flag in FLAGS if flag != "-fsyntax-only"), "-O0", "-S", "-o", str(tmp_path / "made.s")]
+    source = FOLDER / "expressions" / "pipeline_spmd.cpp"
+    result = subprocess.run([*command, f"-I{include_folder()}", str(source)], capture_output=True, text=True, check=False)
+    assert result.returncode == 0, result.stderr[:4000]

@@ -1,5 +1,7 @@
 """The shading of well-known sample programs, in small: each ray generation program is one sample."""
 
+import math
+
 import optixc as ox
 from optixc import float3
 
@@ -32,12 +34,22 @@ class Ray:
     alive: int
 
 
+@ox.payload
+class Shadow:
+    """How much of a light arrives: nothing, until the ray misses everything."""
+
+    light: float
+
+
 @ox.attributes
 class SphereHit:
     normal: float3
 
 
 params = ox.launch_params(Params)
+
+LIGHT = float3(0.0, 0.0, 3.0)
+SHADOW_RAY = ox.RayFlags.TERMINATE_ON_FIRST_HIT | ox.RayFlags.DISABLE_CLOSESTHIT
 
 
 @ox.device
@@ -53,6 +65,14 @@ def pixel_origin() -> float3:
 def store(color: float3):
     i = ox.get_launch_index()
     params.image[i.y, i.x] = color
+
+
+@ox.device
+def visibility(origin: float3, direction: float3, distance: float) -> float:
+    """1 if nothing stands within the distance, else 0; rays of type 1."""
+    shadow = Shadow(0.0)
+    ox.trace(params.scene, origin, direction, tmin=1e-3, tmax=distance, ray_flags=SHADOW_RAY, miss_sbt_index=1, payload=shadow)
+    return shadow.light
 
 
 @ox.device
@@ -116,6 +136,17 @@ def __raygen__volume():
 
 
 @ox.program
+def __raygen__ambient():
+    """The part of a fan of rays that meets nothing. A pipeline that binds `depth` knows their number when it is compiled."""
+    origin = pixel_origin() * float3(1.0, 1.0, 0.0)
+    free = 0.0
+    for ray in range(params.depth):
+        angle = (float(ray) + 0.5) * math.pi / float(params.depth)
+        free += visibility(origin, float3(ox.cos(angle), 0.0, ox.sin(angle)), 1e16)
+    store(float3(free / float(params.depth)))
+
+
+@ox.program
 def __miss__background(ray: Ray):
     ray.color = float3(0.1, 0.2, 0.3)
     ray.alive = 0
@@ -124,6 +155,40 @@ def __miss__background(ray: Ray):
 @ox.program
 def __miss__dark(ray: Ray):
     ray.alive = 0
+
+
+@ox.program
+def __miss__lit(shadow: Shadow):
+    shadow.light = 1.0
+
+
+@ox.program
+def __closesthit__checker(ray: Ray, surface: Surface):
+    """A floor of unit squares in two colours under one light; the ambient part stays in its shadow."""
+    p = ox.get_world_ray_origin() + ox.get_ray_tmax() * ox.get_world_ray_direction()
+    square = int(ox.floor(2.0 * p.x)) + int(ox.floor(2.0 * p.y))
+    colour = surface.albedo if square % 2 == 0 else surface.emission
+    to_light = LIGHT - p
+    distance = ox.length(to_light)
+    diffuse = to_light.z / distance * visibility(p, to_light / distance, distance)
+    ray.color = colour * (0.25 + 0.75 * diffuse)
+
+
+@ox.program
+def __closesthit__mirror(ray: Ray, surface: Surface):
+    """What the reflected ray brings, tinted."""
+    d = ox.get_world_ray_direction()
+    p = ox.get_world_ray_origin() + ox.get_ray_tmax() * d
+    reflected = new_ray()
+    ox.trace(params.scene, p, ox.reflect(d, float3(0.0, 0.0, 1.0)), tmin=1e-3, payload=reflected)
+    ray.color = surface.albedo * reflected.color
+
+
+@ox.program
+def __closesthit__strand(ray: Ray, surface: Surface):
+    """Hair from the colour of its root to that of its tip, along all segments of the strand."""
+    along = (float(ox.get_primitive_index()) + ox.get_curve_parameter()) / float(surface.shader)
+    ray.color = ox.lerp(surface.albedo, surface.emission, along)
 
 
 @ox.program

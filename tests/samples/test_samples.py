@@ -1,6 +1,6 @@
 """Sample programs that OptiX's users know, in our words: run small, in scalar code and in packets, compared with values derived by hand.
 
-Whitted's spheres, a mesh viewer and collision queries are under examples/, whose pictures other tests check.
+A mesh viewer, collision queries and a larger Whitted scene are under examples/, whose pictures other tests check.
 """
 
 from __future__ import annotations
@@ -27,31 +27,42 @@ class Sample:
         self.context = ox.DeviceContext()
         module = self.context.module_create(Path(__file__).parent / "shaders_of_samples.py")
         create = self.context.program_group_create
-        names = ("hello", "orthographic", "path", "queries", "volume")
+        names = ("hello", "orthographic", "path", "queries", "volume", "ambient")
         self.groups = {name: create(raygen=module[f"__raygen__{name}"]) for name in names}
-        self.groups |= {name: create(miss=module[f"__miss__{name}"]) for name in ("background", "dark")}
+        self.groups |= {name: create(miss=module[f"__miss__{name}"]) for name in ("background", "dark", "lit")}
         self.groups |= {name: create(direct_callable=module[f"__direct_callable__{name}"]) for name in ("normal_shading", "phong")}
         triangle = module["__closesthit__barycentrics"]
         self.groups["triangle"] = create(closesthit=triangle)
         self.groups["cutout"] = create(closesthit=triangle, anyhit=module["__anyhit__cutout"])
+        self.groups |= {name: create(closesthit=module[f"__closesthit__{name}"]) for name in ("checker", "mirror", "strand")}
         self.groups["wall"] = create(closesthit=module["__closesthit__glow"])
         sphere = module["__intersection__sphere"]
         self.groups["sphere"] = create(closesthit=module["__closesthit__normal"], intersection=sphere)
         self.groups["shaded"] = create(closesthit=module["__closesthit__callable"], intersection=sphere)
         options = ox.PipelineCompileOptions(uses_motion_blur=True)
-        self.pipeline = self.context.pipeline_create(list(self.groups.values()), max_trace_depth=2, simd=lanes, options=options)
+        self.bind = lambda values: self.context.pipeline_create(
+            list(self.groups.values()), max_trace_depth=2, simd=lanes, options=options, bound_values=values
+        )
+        self.pipeline = self.bind({})
 
     def render(self, raygen: str, scene: Any, hit: str = "triangle", data: Any = None, miss: str = "background", **more: Any) -> Any:
         """The picture, its first row at the bottom."""
-        record = self.groups[hit].record(data) if data is not None else self.groups[hit].record()
+        return self.render_records(self.pipeline, raygen, scene, [(hit, data)], miss, **more)
+
+    def render_records(self, pipeline: Any, raygen: str, scene: Any, hits: list[tuple[str, Any]], miss: str, **more: Any) -> Any:
+        """The same with a pipeline and several records; rays of type 1 are shadow rays."""
+        records = [self.groups[hit].record(data) if data is not None else self.groups[hit].record() for hit, data in hits]
         callables = [self.groups[name].record() for name in ("normal_shading", "phong")]
         table = ox.ShaderBindingTable(
-            raygen=self.groups[raygen].record(), miss=[self.groups[miss].record()], hitgroup=[record], callables=callables
+            raygen=self.groups[raygen].record(),
+            miss=[self.groups[miss].record(), self.groups["lit"].record()],
+            hitgroup=records,
+            callables=callables,
         )
         image = np.zeros((SIZE, SIZE, 3), np.float32)
         values = {"depth": 1, "time": 0.0, "origins": np.zeros((1, 3), np.float32), "distances": np.zeros(1, np.float32)} | more
         width, height = (len(values["origins"]), 1) if raygen == "queries" else (SIZE, SIZE)
-        self.pipeline.launch(shaders.Params(image=image, scene=scene, **values), table, width=width, height=height)
+        pipeline.launch(shaders.Params(image=image, scene=scene, **values), table, width=width, height=height)
         return image
 
     def triangle(self, flags: int = 0, keys: list[Any] | None = None) -> Any:
@@ -173,3 +184,53 @@ def test_volume_viewer(sample: Sample) -> None:
     chord = 2.0 * normals[..., 2]
     np.testing.assert_allclose(image[inside][:, 0], np.exp(-2.0 * chord)[inside], rtol=1e-3)
     assert (image[~inside] == 1.0).all()
+
+
+def square(half: float, z: float) -> Any:
+    """Two triangles."""
+    a, b, c, d = ((x * half, y * half, z) for x, y in ((-1, -1), (1, -1), (1, 1), (-1, 1)))
+    return np.array([a, b, c, a, c, d], np.float32)
+
+
+def test_whitted(sample: Sample) -> None:
+    """A mirror above a checkered floor shows the sky and throws a shadow; elsewhere Lambert's law holds."""
+    inputs = [ox.BuildInputTriangles(square(4.0, 0.0)), ox.BuildInputTriangles(square(0.25, 1.0))]
+    floor = shaders.Surface(albedo=(1.0, 0.0, 0.0), emission=(0.0, 1.0, 0.0), shader=0)
+    mirror = shaders.Surface(albedo=(0.5, 0.5, 1.0), emission=(0.0, 0.0, 0.0), shader=0)
+    records = [("checker", floor), ("mirror", mirror)]
+    image = sample.render_records(sample.pipeline, "orthographic", sample.context.accel_build(inputs), records, "background")
+    x, y = places()
+    largest = np.maximum(abs(x), abs(y))
+    np.testing.assert_allclose(image[largest < 0.25], np.broadcast_to(BACKGROUND * mirror.albedo, (4 * 4, 3)), rtol=1e-6)
+    # The light stands 3 above the floor, so the shadow is half as large again as the mirror.
+    cosine = 3.0 / np.sqrt(9.0 + x * x + y * y)
+    shade = 0.25 + 0.75 * np.where(largest < 0.375, 0.0, cosine)
+    even = (np.floor(2.0 * x) + np.floor(2.0 * y)) % 2 == 0
+    expected = shade[..., None] * np.where(even[..., None], floor.albedo, floor.emission)
+    np.testing.assert_allclose(image[largest > 0.25], expected[largest > 0.25], atol=1e-6)
+
+
+def test_hair(sample: Sample) -> None:
+    """The colour of a strand of two segments goes from root to tip."""
+    vertices = np.array([[0.0, -1.0, 0.0], [0.0, 0.0, 0.0], [0.0, 1.0, 0.0]], np.float32)
+    radii = np.full(3, 0.25, np.float32)
+    strand = ox.BuildInputCurves(ox.PrimitiveType.ROUND_LINEAR, vertices, radii, np.array([0, 1], np.uint32))
+    colours = shaders.Surface(albedo=(1.0, 0.0, 0.0), emission=(0.0, 0.5, 1.0), shader=2)
+    image = sample.render("orthographic", sample.context.accel_build([strand]), "strand", colours)
+    x, y = places()
+    along = ((y + 1.0) / 2.0)[..., None]
+    expected = (1.0 - along) * np.array([1.0, 0.0, 0.0]) + along * np.array([0.0, 0.5, 1.0])
+    np.testing.assert_allclose(image[abs(x) < 0.25], expected[abs(x) < 0.25], atol=1e-5)
+    assert (image[abs(x) > 0.25] == BACKGROUND).all()
+
+
+def test_bound_values(sample: Sample) -> None:
+    """Ambient occlusion by as many rays as the pipeline binds: a wall hides those that go to the right below its edge."""
+    wall = np.array([[1.5, -9.0, 0.0], [1.5, 9.0, 0.0], [1.5, 9.0, 1.5], [1.5, -9.0, 0.0], [1.5, 9.0, 1.5], [1.5, -9.0, 1.5]], np.float32)
+    scene = sample.context.accel_build([ox.BuildInputTriangles(wall)])
+    pipeline = sample.bind({"depth": 24})
+    image = sample.render_records(pipeline, "ambient", scene, [("triangle", None)], "background", depth=1)
+    x, _ = places()
+    angles = (np.arange(24) + 0.5) * np.pi / 24
+    hidden = (np.cos(angles) > 0.0) & (np.tan(angles) * (1.5 - x[..., None]) < 1.5)
+    np.testing.assert_allclose(image[..., 0], 1.0 - hidden.mean(axis=-1), atol=1e-6)

@@ -109,7 +109,7 @@ class If:
 
 @dataclass(frozen=True)
 class While:
-    """Evaluate `condition_body`, stop unless `condition`; then run `body`. `bounded` if the number of turns is provably finite.
+    """Evaluate `condition_body`, stop unless `condition`; then run `body`. `bounded` if a pass proved that the turns are finite.
 
     `condition_body` holds what `lower` hoisted from the condition; `continue` goes to it.
     """

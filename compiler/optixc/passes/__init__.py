@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from optixc.ir.nodes import Pipeline
+from optixc.passes.bound_loops import bound_loops
 from optixc.passes.fold_constants import fold_constants
 from optixc.passes.propagate import propagate_constants
 from optixc.passes.remove_unused import remove_unused
@@ -15,6 +16,7 @@ PASSES: tuple[tuple[str, Callable[[Pipeline], Pipeline]], ...] = (
     ("fold_constants", fold_constants),
     ("propagate_constants", propagate_constants),
     ("remove_unused", remove_unused),
+    ("bound_loops", bound_loops),
 )
 
 
