@@ -1,7 +1,8 @@
 """The folder of compiled pipelines: content addressed, safe between processes, bounded.
 
 An entry is a shared object, named by key and its own checksum, and a JSON file `KEY.json` that names it. The JSON is renamed into
-place last, so that whoever sees it sees a whole entry; a shared object that does not have its checksum is treated as absent.
+place last, so that whoever sees it sees a whole entry. Every file holds or has a checksum; what does not fit it is told through `warn`
+and treated as absent, so that it is made anew and never loaded.
 Besides, a *source key* (what can be known of a compile without running the compiler's front end) may point at an entry.
 Nothing here raises for a folder that cannot be written: it says so once through `warn` and the compile goes on without a cache.
 """
@@ -9,18 +10,17 @@ Nothing here raises for a folder that cannot be written: it says so once through
 from __future__ import annotations
 
 import hashlib
-import json
 import os
 import tempfile
 from collections.abc import Callable
+from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+
+from optixc.signed_json import Json, signed, unsigned
 
 DEFAULT_MAX_SIZE = 1 << 30
-_KEY_LENGTH = 40
 
-Json = dict[str, Any]
 Produce = Callable[[Path], None]
 
 
@@ -31,16 +31,6 @@ class Entry:
     library: Path
     manifest: Json
     hit: bool
-
-
-def digest(*parts: str | bytes) -> str:
-    """A key for parts, which are kept apart from each other."""
-    state = hashlib.sha256()
-    for part in parts:
-        data = part.encode() if isinstance(part, str) else part
-        state.update(len(data).to_bytes(8, "little"))
-        state.update(data)
-    return state.hexdigest()[:_KEY_LENGTH]
 
 
 def default_folder() -> Path:
@@ -106,18 +96,21 @@ class Cache:
         """The entry of this key if it is there and whole."""
         if not self.enabled:
             return None
-        record = self.folder / f"{key}.json"
+        path = self.folder / f"{key}.json"
+        record = self._read_signed(path, key)
+        if record is None:
+            return None
+        library = self.folder / record["library"]
         try:
-            stored = json.loads(record.read_bytes())
-            library = self.folder / str(stored["library"])
-            whole = _checksum(library) == stored["checksum"]
-            manifest = stored["manifest"]
-        except (OSError, ValueError, KeyError, TypeError):
+            checksum = _checksum(library)
+        except OSError:
+            # Another process has dropped the entry meanwhile.
             return None
-        if not whole or not isinstance(manifest, dict):
+        if checksum != record["checksum"]:
+            self._drop_damaged(library)
             return None
-        self._touch(record)
-        return Entry(library, manifest, hit=True)
+        self._touch(path)
+        return Entry(library, record["manifest"], hit=True)
 
     def store(self, key: str, manifest: Json, produce: Produce) -> Entry:
         """Lets `produce` write the shared object, keeps it under `key` and gives the entry; without a cache, a temporary one."""
@@ -139,22 +132,17 @@ class Cache:
         if not self.enabled:
             return None
         path = self.folder / f"{key}.note"
-        try:
-            stored = json.loads(path.read_bytes())
-            if stored["checksum"] != digest(json.dumps(stored["note"])):
-                return None
-        except (OSError, ValueError, KeyError, TypeError):
-            return None
-        self._touch(path)
-        note = stored["note"]
-        return note if isinstance(note, dict) else None
+        note = self._read_signed(path, key)
+        if note is not None:
+            self._touch(path)
+        return note
 
     def write_note(self, key: str, note: Json) -> None:
         """Keeps JSON under a source key."""
         if self.enabled:
             try:
                 self.folder.mkdir(parents=True, exist_ok=True)
-                self._put(self.folder / f"{key}.note", json.dumps({"checksum": digest(json.dumps(note)), "note": note}).encode())
+                self._put_signed(self.folder / f"{key}.note", key, note)
             except OSError as error:
                 self._complain(error)
 
@@ -174,14 +162,31 @@ class Cache:
         library = self.folder / f"{key}-{checksum[:16]}.so"
         os.replace(made, library)
         record = {"library": library.name, "checksum": checksum, "manifest": manifest}
-        self._put(self.folder / f"{key}.json", json.dumps(record).encode())
+        self._put_signed(self.folder / f"{key}.json", key, record)
         for extra in scratch.iterdir():
             os.replace(extra, self.folder / extra.name)
         return Entry(library, manifest, hit=False)
 
-    def _put(self, path: Path, data: bytes) -> None:
+    def _read_signed(self, path: Path, key: str) -> Json | None:
+        """What `_put_signed` wrote under this key, None if it is not there or not what was written."""
+        try:
+            data = path.read_bytes()
+        except OSError:
+            return None
+        content = unsigned(key, data)
+        if content is None:
+            self._drop_damaged(path)
+        return content
+
+    def _drop_damaged(self, path: Path) -> None:
+        """Says so, and takes the file away so that it is said once; one that cannot be taken away is made anew each time."""
+        self._warn(f"the cache file {path} is damaged; it is not used, and what it held is compiled again")
+        with suppress(OSError):
+            path.unlink()
+
+    def _put_signed(self, path: Path, key: str, content: Json) -> None:
         with tempfile.NamedTemporaryFile(dir=self.folder, prefix="new-", delete=False) as file:
-            file.write(data)
+            file.write(signed(key, content))
         os.replace(file.name, path)
 
     def _evict(self, incoming: int) -> None:

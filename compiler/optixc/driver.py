@@ -18,7 +18,7 @@ from typing import Any
 import numpy as np
 
 from optixc import passes, toolchain
-from optixc.cache import Cache, Json, digest
+from optixc.cache import Cache
 from optixc.codegen.cpp_types import payload_words
 from optixc.codegen.emit import emit as emit_cpp
 from optixc.codegen.program_classes import constant, payload_of, traces_of
@@ -42,6 +42,7 @@ from optixc.passes.callables import signatures_called
 from optixc.passes.features import Features, features
 from optixc.passes.pipeline import LinkError, link
 from optixc.passes.specialize import parameter_path
+from optixc.signed_json import Json, digest
 from optixc.stack_usage import frames_of_programs
 from optixc.version import __version__
 

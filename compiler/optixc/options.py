@@ -71,7 +71,8 @@ class CompileOptions:
             raise InvalidValueError(f"target must be one of {', '.join(TARGETS)}, not {self.target!r}")
         if self.optimization not in (0, 1, 2, 3):
             raise InvalidValueError(f"the optimisation level must be 0 to 3, not {self.optimization!r}")
-        if not isinstance(self.max_trace_depth, int) or isinstance(self.max_trace_depth, bool) or not 0 <= self.max_trace_depth <= MAX_TRACE_DEPTH:
+        is_number = isinstance(self.max_trace_depth, int) and not isinstance(self.max_trace_depth, bool)
+        if not is_number or not 0 <= self.max_trace_depth <= MAX_TRACE_DEPTH:
             raise InvalidValueError(f"max_trace_depth must be 0 to {MAX_TRACE_DEPTH}, not {self.max_trace_depth!r}")
         for name in ("debug", "validation"):
             if not isinstance(getattr(self, name), bool):

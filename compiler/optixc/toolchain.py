@@ -6,7 +6,6 @@ asked once and remembered in the cache folder. This module knows nothing of shad
 
 from __future__ import annotations
 
-import json
 import os
 import re
 import shutil
@@ -19,6 +18,7 @@ from pathlib import Path
 
 from optixc.enums_program import Result
 from optixc.errors import OptixError
+from optixc.signed_json import signed, unsigned
 from optixc.stack_usage import read_frames
 
 MIN_CLANG = 16
@@ -215,6 +215,7 @@ def _ask_version(path: str) -> _Version:
     return ("gcc", tuple(map(int, gcc.groups()))) if gcc else ("", ())
 
 
+_COMPILERS = "compilers.json"
 _Version = tuple[str, tuple[int, ...]]
 _versions: dict[Path | None, dict[str, _Version]] = {}
 """Known compilers by folder; under None what this process has seen."""
@@ -225,9 +226,9 @@ def _remembered(memory: Path | None) -> dict[str, _Version]:
     if known is None:
         known = _versions[memory] = {}
         try:
-            stored = json.loads((memory / "compilers.json").read_text()) if memory is not None else {}
-            known.update({key: (kind, tuple(version)) for key, (kind, version) in stored.items()})
-        except (OSError, ValueError, AttributeError, TypeError):
+            stored = unsigned(_COMPILERS, (memory / _COMPILERS).read_bytes()) if memory is not None else None
+            known.update({key: (kind, tuple(version)) for key, (kind, version) in (stored or {}).items()})
+        except OSError:
             known.clear()
     return known
 
@@ -239,8 +240,8 @@ def _remember(memory: Path | None, key: str, known: _Version) -> None:
         return
     try:
         memory.mkdir(parents=True, exist_ok=True)
-        with tempfile.NamedTemporaryFile("w", dir=memory, prefix="new-", delete=False) as file:
-            json.dump(_versions[memory], file)
-        os.replace(file.name, memory / "compilers.json")
+        with tempfile.NamedTemporaryFile(dir=memory, prefix="new-", delete=False) as file:
+            file.write(signed(_COMPILERS, _versions[memory]))
+        os.replace(file.name, memory / _COMPILERS)
     except OSError:
         return

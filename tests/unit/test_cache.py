@@ -10,7 +10,8 @@ from pathlib import Path
 
 import pytest
 
-from optixc.cache import DEFAULT_MAX_SIZE, Cache, default_folder, digest, max_size
+from optixc.cache import DEFAULT_MAX_SIZE, Cache, default_folder, max_size
+from optixc.signed_json import digest
 
 
 def opened(folder: Path, limit: int = 1 << 20) -> tuple[Cache, list[str]]:
@@ -35,8 +36,8 @@ def test_what_was_stored_is_found(tmp_path: Path) -> None:
     assert warnings == []
 
 
-def test_damaged_entries_are_absent(tmp_path: Path) -> None:
-    store, _ = opened(tmp_path)
+def test_damaged_entries_are_absent_and_told(tmp_path: Path) -> None:
+    store, warnings = opened(tmp_path)
     entry = store.store("k", {}, writes(b"code"))
     entry.library.write_bytes(b"c0de")
     assert store.find("k") is None
@@ -46,6 +47,39 @@ def test_damaged_entries_are_absent(tmp_path: Path) -> None:
     assert store.find("k") is None
     (tmp_path / "k.json").write_text(json.dumps({"library": "gone.so", "checksum": "", "manifest": {}}))
     assert store.find("k") is None
+    assert ["is damaged" in warning for warning in warnings] == [True] * 3
+    assert store.find("k") is None, "it was taken away, and is absent without a word"
+    assert len(warnings) == 3
+
+
+@pytest.mark.parametrize("kind", ["json", "note"])
+def test_every_flipped_bit_and_every_truncation_is_noticed(tmp_path: Path, kind: str) -> None:
+    store, _ = opened(tmp_path)
+    store.store("k", {"frames": {"f": 128}, "text": "ä"}, writes(b"code"))
+    store.write_note("k", {"entry": "k", "stack": 48})
+    look = store.find if kind == "json" else store.read_note
+    path = tmp_path / f"k.{kind}"
+    whole = path.read_bytes()
+    assert look("k") is not None
+    for position in range(len(whole)):
+        for bit in range(8):
+            path.write_bytes(whole[:position] + bytes([whole[position] ^ 1 << bit]) + whole[position + 1 :])
+            assert look("k") is None, (position, bit)
+        path.write_bytes(whole[:position])
+        assert look("k") is None, position
+    path.write_bytes(whole + b" ")
+    assert look("k") is None
+    path.write_bytes(whole)
+    assert look("k") is not None
+
+
+@pytest.mark.parametrize("kind", ["json", "note"])
+def test_files_under_another_key_are_noticed(tmp_path: Path, kind: str) -> None:
+    store, _ = opened(tmp_path)
+    store.store("k", {}, writes(b"code"))
+    store.write_note("k", {"entry": "k"})
+    os.replace(tmp_path / f"k.{kind}", tmp_path / f"other.{kind}")
+    assert (store.find if kind == "json" else store.read_note)("other") is None
 
 
 def test_notes_are_checked_too(tmp_path: Path) -> None:
