@@ -196,3 +196,22 @@ def test_the_triangle_from_cpp_is_the_one_from_python(tmp_path: Path) -> None:
     assert content.startswith(header)
     picture = np.frombuffer(content[len(header) :], np.uint8).reshape(512, 512, 3)
     assert np.abs(picture.astype(int) - ox.read_image(tmp_path / "a.png")[:, :, :3]).max() <= 1
+
+
+def test_material_network_wires_nodes_to_objects(tmp_path: Path) -> None:
+    output = run("12_callables", "--width", 160, "--height", 90, "--samples", 16, "--output", tmp_path / "a.exr")
+    assert "11 objects, 78 nodes in 10 programs" in output
+    image = ox.read_image(tmp_path / "a.exr")[:, :, :3]
+    assert np.isfinite(image).all()
+    assert image.min() >= 0.0
+
+    def color(x: float, y: float) -> np.ndarray:
+        """The mean around a place given in shares of width and height."""
+        return image[round(90 * y) - 2 : round(90 * y) + 3, round(160 * x) - 2 : round(160 * x) + 3].mean(axis=(0, 1))
+
+    red, green, blue = color(0.65, 0.48), color(0.29, 0.7), color(0.92, 0.72)
+    assert red[0] > 3.0 * red[1], "cloth"
+    assert green[1] > 1.3 * green[0], "jade"
+    assert blue[2] > 1.5 * blue[1], "lacquer"
+    paper = color(0.1, 0.9)
+    assert paper.max() < 1.2 * paper.min(), "paper is nearly grey"

@@ -118,6 +118,32 @@ def test_struct_arrays_take_the_structs_dtype() -> None:
         Scene(np.zeros((3, 4), np.float32))
 
 
+def test_a_list_of_structs_is_copied_into_an_array() -> None:
+    @ox.struct
+    class Mesh:
+        weights: ox.Array[ox.float32]
+        camera: Camera
+
+    @ox.struct
+    class Scene:
+        meshes: ox.Array[Mesh]
+
+    weights = [np.full(n, n, np.float32) for n in (2, 3)]
+    addresses = [array.ctypes.data for array in weights]
+    scene = Scene([Mesh(weights.pop(0), Camera((1, 2, 3), 4)), (weights.pop(0), Camera(0))])
+    meshes: np.ndarray = scene.meshes
+    assert meshes.dtype == Mesh.dtype
+    assert row(scene)["meshes"]["data"] == meshes.ctypes.data
+    assert list(meshes["weights"]["data"]) == addresses
+    assert list(meshes["weights"]["shape"][:, 0]) == [2, 3]
+    assert meshes[0]["camera"]["fov"] == 4.0
+    # The originals' arrays are still there: nothing else holds them
+    assert [list(source.weights) for source in meshes.sources] == [[2, 2], [3, 3, 3]]
+    assert Scene([]).meshes.shape == (0,)
+    with pytest.raises(ox.InvalidValueError, match=r"Scene\.meshes\[1\] takes a Mesh"):
+        Scene([Mesh(None, Camera(0)), Camera(0)])
+
+
 def test_copies_are_independent() -> None:
     camera = Camera((1, 2, 3))
     for other in (ox.copy(camera), python_copy.copy(camera)):

@@ -6,6 +6,7 @@ handles.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Annotated, Any, Generic, TypeVar, overload
 
@@ -45,7 +46,7 @@ if TYPE_CHECKING:
         def __getitem__(self, index: Any) -> np.ndarray[Any, Any]: ...
         def __getitem__(self, index: Any) -> Any: ...
         def __setitem__(self, index: Any, value: T) -> None: ...  # type: ignore[override]
-        def __set__(self, instance: Any, value: np.ndarray[Any, Any] | None) -> None: ...
+        def __set__(self, instance: Any, value: np.ndarray[Any, Any] | Sequence[Any] | None) -> None: ...
 
     class Array2(Array[T]):
         """A 2-D view."""

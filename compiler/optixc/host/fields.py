@@ -234,9 +234,16 @@ class FixedArrayField:
         return array
 
 
+class StructArray(np.ndarray[Any, Any]):
+    """Structs copied into one array; `sources` holds the originals, and with them the arrays that their copies point to."""
+
+    sources: tuple[Any, ...] = ()
+
+
 @dataclass(frozen=True)
 class ArrayField:
-    """A view of numpy memory: pointer and shape; takes C-contiguous arrays of the element's dtype and the right rank, or None."""
+    """A view of numpy memory: pointer and shape; takes C-contiguous arrays of the element's dtype and the right rank, or None. A list of
+    structs is copied into an array."""
 
     element: FieldType
     rank: int
@@ -261,12 +268,23 @@ class ArrayField:
             struct.pack_into(f"<{1 + self.rank}Q", buffer, offset, *([0] * (1 + self.rank)))
             return None
         if not isinstance(value, np.ndarray):
-            raise InvalidValueError(
-                f"{where} takes a numpy array ({self._wanted()}), whose memory shaders then use, not {type(value).__name__}"
-            )
+            value = self._copy_structs(value, where)
         self._check(value, where)
         struct.pack_into(f"<{1 + self.rank}Q", buffer, offset, value.ctypes.data if value.size else 0, *value.shape[: self.rank])
         return value
+
+    def _copy_structs(self, value: Any, where: str) -> np.ndarray[Any, Any]:
+        base = self.element.dtype.base
+        if base.names is None or self.rank != 1 or not isinstance(value, tuple | list):
+            raise InvalidValueError(
+                f"{where} takes a numpy array ({self._wanted()}), whose memory shaders then use, not {type(value).__name__}"
+            )
+        array = np.zeros(len(value), base).view(StructArray)
+        memory = memoryview(array.view(np.uint8)) if value else memoryview(bytearray())
+        array.sources = tuple(
+            self.element.store(memory, number * base.itemsize, item, f"{where}[{number}]") for number, item in enumerate(value)
+        )
+        return array
 
     def _check(self, array: np.ndarray[Any, Any], where: str) -> None:
         base, inner = self.element.dtype.base, self.element.dtype.shape
@@ -285,7 +303,8 @@ class ArrayField:
 
     def _wanted(self) -> str:
         base, inner = self.element.dtype.base, self.element.dtype.shape
-        axes = [*"nml"[: self.rank], *map(str, inner)]
-        return (
-            f"{self.text}: dtype {'of the struct' if base.names else base.name}, shape ({', '.join(axes)}{',' if len(axes) == 1 else ''})"
-        )
+        axes = ", ".join([*"nml"[: self.rank], *map(str, inner)])
+        shape = f"shape ({axes},)" if "," not in axes else f"shape ({axes})"
+        if base.names is None:
+            return f"{self.text}: dtype {base.name}, {shape}"
+        return f"dtype of the struct, {shape}{', or a list of structs' if self.rank == 1 else ''}"
