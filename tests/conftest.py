@@ -19,3 +19,4 @@ def pytest_addoption(parser: pytest.Parser) -> None:
     parser.addoption("--update-golden", action="store_true", help="write the golden files anew from what the compiler makes now")
     parser.addoption("--fuzz", action="store_true", help="the long run of the program generator instead of the short one")
     parser.addoption("--programs", type=int, default=20_000, help="how many programs the long run makes")
+    parser.addoption("--graphs", type=int, default=300, help="how many call graphs the long run makes")

@@ -1,132 +1,148 @@
-"""Random call graphs: programs that trace, call callables and throw, nested as chance has it; scalar code and packets agree.
+"""Random call graphs, built step by step: recursion to depth 31, callables that call callables, exceptions at random points, any-hit
+programs that ignore and terminate. Scalar code, packets of 8 and 16 and the interpreter leave the same numbers and logs of calls.
 
-Every program of a graph does a few random actions on a value: arithmetic, a call of a callables record that depends on the value, a trace
-with a random ray, an exception. Depth is bounded by a counter that goes with the value, so every graph ends.
+A few graphs with every test run, many with --fuzz (--graphs changes their number).
 """
 
 from __future__ import annotations
 
 import tempfile
-from collections.abc import Iterator
+from functools import partial
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
-from hypothesis import HealthCheck, given, settings
+from call_graphs import CALLABLES, NESTING, PROGRAMS, WRAPS, Graph
+from hypothesis import HealthCheck, Phase, settings
 from hypothesis import strategies as st
+from hypothesis.stateful import RuleBasedStateMachine, initialize, rule, run_state_machine_as_test
 
 import optixc as ox
+from optixc import api
+from optixc.options import CompileOptions
 
-COUNT = 24
-CALLABLES = 3
-MODES = (1, 8, 16)
+COUNT = 40
+BUDGET = 120
+LANES = (8, 16)
 CORNERS = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0]], np.float32)
-HEAD = """import optixc as ox
-from optixc import float3, uint32
+NESTERS = ("raygen", "hit a", "hit b", "hit wide", "miss", "direct 0", "direct 1", "continuation 0", "continuation 1")
+"""What has a call of some kind from the start, so that most graphs are deep."""
+ACTIONS = (*NESTING, *NESTING, "throw", "end", "end", "arithmetic")
 
 
 @ox.struct
 class Params:
     scene: ox.Traversable
-    out: ox.Array[uint32]
+    out: ox.Array[ox.uint32]
     codes: ox.Array[ox.int32]
+    details: ox.Array2[ox.uint32]
+    budget: ox.Array[ox.uint32]
+    log: ox.Array[ox.uint32]
 
 
-@ox.payload
-class Value:
-    v: uint32
-    fuel: uint32
+@ox.struct
+class Number:
+    n: ox.uint32
 
 
-params = ox.launch_params(Params)
+class Ways:
+    """A context and the scene of all graphs: two triangles with different records, a box, and a place with nothing."""
 
+    def __init__(self) -> None:
+        self.folder = tempfile.TemporaryDirectory()
+        self.context = ox.DeviceContext(cache_dir=Path(self.folder.name) / "cache")
+        build = self.context.accel_build
+        corners = np.concatenate([CORNERS, CORNERS + np.float32([10, 0, 0])])
+        triangles = build([ox.BuildInputTriangles(corners, num_sbt_records=2, flags=[2, 2], sbt_index_offsets=np.uint32([0, 1]))])
+        box = build([ox.BuildInputCustomPrimitives(np.array([[20, 0, 0, 21, 1, 0.75]], np.float32), flags=2)])
+        self.scene = build([ox.BuildInputInstances([ox.Instance(triangles), ox.Instance(box, sbt_offset=4)])])
 
-@ox.device
-def shoot(v: uint32, fuel: uint32) -> uint32:
-    value = Value(v, fuel)
-    ox.trace(params.scene, float3(0.25 + float(v % 2) * 5.0, 0.25, 1.0), float3(0.0, 0.0, -1.0), ray_flags=RAY_FLAGS, payload=value)
-    return value.v
-
-
-@ox.program
-def __exception__e():
-    i = ox.get_launch_index().x
-    params.codes[i] = ox.get_exception_code()
-"""
-
-arithmetic = st.sampled_from(["v = v * 1664525 + 1013904223", "v = v ^ (v >> 7)", "v = v + fuel", "if v % 3 == 0:\n        v += 5"])
-DIRECT = f"v = v * 3 + ox.direct_call(v % {CALLABLES}, v + 1, fuel - 1, result=uint32)"
-CONTINUATION = f"v = v * 5 + ox.continuation_call(v % {CALLABLES}, v + 1, fuel - 1, result=uint32)"
-TRACE = "v = v * 7 + shoot(v + 1, fuel - 1)"
-throw = st.integers(0, 1 << 29).map(lambda code: f"if v % 11 == 4:\n        ox.throw_exception({code}, v)")
-
-
-def body(draw: Any, can_trace: bool) -> list[str]:
-    """Actions of one program; what nests needs fuel."""
-    nesting = st.sampled_from([DIRECT, CONTINUATION, TRACE] if can_trace else [DIRECT])
-    guarded = nesting.map(lambda text: f"if fuel > 0:\n        {text}")
-    actions = draw(st.lists(st.one_of(arithmetic, guarded, throw), min_size=1, max_size=4))
-    return [f"    {line}" for action in actions for line in action.split("\n    ")]
-
-
-@st.composite
-def graphs(draw: Any) -> str:
-    parts = [HEAD.replace("RAY_FLAGS", str(draw(st.sampled_from([0, 0, 4]))))]
-    for name, can_trace in (*((f"direct_callable__d{n}", False) for n in range(CALLABLES)),
-                            *((f"continuation_callable__c{n}", True) for n in range(CALLABLES))):
-        lines = [f"def __{name}(start: uint32, fuel: uint32) -> uint32:", "    v = start", *body(draw, can_trace), "    return v"]
-        parts.append("\n".join(["@ox.program", *lines]))
-    for name in ("closesthit__h", "miss__m"):
-        lines = [f"def __{name}(value: Value):", "    v = value.v", "    fuel = value.fuel", *body(draw, True), "    value.v = v"]
-        parts.append("\n".join(["@ox.program", *lines]))
-    hit = draw(st.sampled_from(["ox.ignore_intersection()", "ox.terminate_ray()", "pass"]))
-    parts.append(f"@ox.program\ndef __anyhit__a(value: Value):\n    value.v = value.v + 3\n    if value.v % 5 == 2:\n        {hit}")
-    lines = ["def __raygen__r():", "    i = ox.get_launch_index().x", "    v = i", f"    fuel = uint32({draw(st.integers(1, 5))})",
-             *body(draw, True), f"    {TRACE}", "    params.out[i] = v"]
-    parts.append("\n".join(["@ox.program", *lines]))
-    return "\n\n\n".join(parts) + "\n"
-
-
-@pytest.fixture(scope="module")
-def context() -> Iterator[ox.DeviceContext]:
-    with tempfile.TemporaryDirectory() as folder:
-        yield ox.DeviceContext(cache_dir=folder)
-
-
-def run(context: ox.DeviceContext, text: str, simd: int) -> tuple[list[int], list[int]]:
-    with tempfile.TemporaryDirectory() as folder:
-        path = Path(folder) / "graph.py"
+    def results(self, text: str, depth: int) -> dict[str, dict[str, np.ndarray]]:
+        """What each way to run leaves in the arrays of the parameters."""
+        path = Path(self.folder.name) / "graph.py"
         path.write_text(text)
-        module = context.module_create(path)
-        groups: dict[str, Any] = {}
-        create = context.program_group_create
-        for n in range(CALLABLES):
-            groups[f"call{n}"] = create(direct_callable=module[f"__direct_callable__d{n}"],
-                                        continuation_callable=module[f"__continuation_callable__c{n}"])
-        groups["hit"] = create(closesthit=module["__closesthit__h"], anyhit=module["__anyhit__a"])
-        for kind, name in (("raygen", "r"), ("miss", "m"), ("exception", "e")):
-            groups[kind] = create(**{kind: module[f"__{kind}__{name}"]})
+        module, create = self.context.module_create(path), self.context.program_group_create
+        groups = self._groups(module, create)
         options = ox.PipelineCompileOptions(exception_flags=ox.ExceptionFlags.USER | ox.ExceptionFlags.TRACE_DEPTH)
-        pipeline = context.pipeline_create(list(groups.values()), max_trace_depth=4, simd=simd, options=options)
+        found = {}
+        for lanes in (1, *LANES):
+            pipeline = self.context.pipeline_create(list(groups.values()), max_trace_depth=depth, simd=lanes, options=options)
+            found[f"{lanes} lanes"] = self._launch(groups, lambda p, t, pipeline=pipeline: pipeline.launch(p, t, COUNT))
+            if lanes == 1:
+                found["interpreted"] = self._launch(groups, partial(self._interpret, pipeline))
+        return found
 
-    @ox.struct
-    class Params:
-        scene: ox.Traversable
-        out: ox.Array[ox.uint32]
-        codes: ox.Array[ox.int32]
+    def _groups(self, module: Any, create: Any) -> dict[str, Any]:
+        groups = {"raygen": create(raygen=module["__raygen__r"]), "exception": create(exception=module["__exception__e"])}
+        groups |= {f"miss {name}": create(miss=module[f"__miss__{name}"]) for name in "mw"}
+        for n in range(CALLABLES):
+            groups[f"call {n}"] = create(direct_callable=module[f"__direct_callable__c{n}"],
+                                         continuation_callable=module[f"__continuation_callable__c{n}"])
+        hit = {name: module[f"__closesthit__{name}"] for name in "abw"}
+        box = module["__intersection__i"]
+        groups["hit 0"] = create(closesthit=hit["a"], anyhit=module["__anyhit__a"])
+        groups["hit 1"] = create(closesthit=hit["w"], anyhit=module["__anyhit__w"])
+        groups["hit 2"] = create(closesthit=hit["b"], anyhit=module["__anyhit__w"])
+        groups["hit 3"] = create(closesthit=hit["w"])
+        groups["hit 4"] = create(closesthit=hit["b"], anyhit=module["__anyhit__a"], intersection=box)
+        groups["hit 5"] = create(closesthit=hit["w"], anyhit=module["__anyhit__w"], intersection=box)
+        return groups
 
-    out, codes = np.zeros(COUNT, np.uint32), np.zeros(COUNT, np.int32)
-    scene = context.accel_build([ox.BuildInputTriangles(CORNERS, flags=2)])
-    table = ox.ShaderBindingTable(raygen=groups["raygen"].record(), miss=[groups["miss"].record()], hitgroup=[groups["hit"].record()],
-                                  callables=[groups[f"call{n}"].record() for n in range(CALLABLES)],
-                                  exception=groups["exception"].record())
-    pipeline.launch(Params(scene=scene, out=out, codes=codes), table, COUNT)
-    return out.tolist(), codes.tolist()
+    def _launch(self, groups: dict[str, Any], launch: Any) -> dict[str, np.ndarray]:
+        arrays = {"out": np.zeros(COUNT, np.uint32), "codes": np.zeros(COUNT, np.int32), "details": np.zeros((COUNT, 2), np.uint32),
+                  "budget": np.full(COUNT, BUDGET, np.uint32), "log": np.zeros(COUNT, np.uint32)}
+
+        def records(*names: str) -> list[Any]:
+            return [groups[name].record(Number(7 * number + 1)) for number, name in enumerate(names)]
+
+        table = ox.ShaderBindingTable(raygen=groups["raygen"].record(), exception=records("exception")[0],
+                                      miss=records("miss m", "miss w"), hitgroup=records(*(f"hit {n}" for n in range(6))),
+                                      callables=records(*(f"call {n}" for n in range(CALLABLES))))
+        launch(Params(scene=self.scene, **arrays), table)
+        return arrays
+
+    def _interpret(self, pipeline: Any, params: Any, table: Any) -> None:
+        for index in range(COUNT):
+            ox.interpret(pipeline, params, table, (COUNT, 1, 1), (index, 0, 0))
 
 
-@settings(max_examples=6, deadline=None, suppress_health_check=list(HealthCheck))
-@given(graphs())
-def test_scalar_code_and_packets_agree(context: ox.DeviceContext, text: str) -> None:
-    scalar, *packets = (run(context, text, simd) for simd in MODES)
-    assert packets == [scalar] * len(packets)
+class CallGraphs(RuleBasedStateMachine):
+    """Each step adds an action to some program; at the end the graph runs in every way."""
+
+    ways: Ways
+
+    @initialize(fuel=st.sampled_from([3, 8, 31, 31]), depth=st.sampled_from([1, 2, 5, 31, 31]),
+                flows=st.lists(st.sampled_from(list(NESTING)), min_size=len(NESTERS), max_size=len(NESTERS)))
+    def begin(self, fuel: int, depth: int, flows: list[str]) -> None:
+        self.graph, self.depth = Graph(fuel=fuel), depth
+        for name, flow in zip(NESTERS, flows, strict=True):
+            self.graph.add(name, flow, "plain", 1)
+
+    @rule(name=st.sampled_from(list(PROGRAMS)), action=st.sampled_from(ACTIONS), wrap=st.sampled_from(list(WRAPS)),
+          number=st.integers(0, 999))
+    def act(self, name: str, action: str, wrap: str, number: int) -> None:
+        self.graph.add(name, action, wrap, number)
+
+    def teardown(self) -> None:
+        if not hasattr(self, "graph"):
+            return
+        text = self.graph.text()
+        results = self.ways.results(text, self.depth)
+        scalar = results.pop("1 lanes")
+        for way, arrays in results.items():
+            for key, values in arrays.items():
+                wrong = np.argwhere(values != scalar[key])
+                if wrong.size:
+                    at = tuple(wrong[0])
+                    pytest.fail(f"{key}{list(at)} is {values[at]} {way}, {scalar[key][at]} in scalar code, depth {self.depth}\n{text}")
+
+
+def test_all_ways_run_random_call_graphs_alike(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> None:
+    long_run = bool(request.config.getoption("--fuzz"))
+    graphs = int(request.config.getoption("--graphs")) if long_run else 3
+    monkeypatch.setattr(api, "CompileOptions", partial(CompileOptions, optimization=1 if long_run else 0))
+    CallGraphs.ways = Ways()
+    run_state_machine_as_test(CallGraphs, settings=settings(
+        max_examples=graphs, stateful_step_count=20, deadline=None, database=None, derandomize=not long_run,
+        phases=[Phase.generate, Phase.shrink] if long_run else [Phase.generate], suppress_health_check=list(HealthCheck)))
