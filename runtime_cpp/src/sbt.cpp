@@ -47,7 +47,7 @@ void checkSection(const Section& section)
 void checkHeader(const void* record, std::uint32_t kind, std::uint32_t pipelineUid, const std::string& name, OxrtResult result)
 {
     const OxrtRecordHeader header = readHeader(record);
-    if (header.pipelineUid == 0) fail(result, "the SBT's %s is empty; write its header with oxrtSbtRecordPackHeader", name.c_str());
+    if (header.pipelineUid == 0) fail(result, "the SBT's %s is empty; give it the header of a group (oxrtSbtRecordPackHeader), of an empty one if nothing is to run", name.c_str());
     if (header.pipelineUid != pipelineUid)
         fail(result, "the SBT's %s was written for another pipeline (%u, this is %u); write its header for this one", name.c_str(),
              header.pipelineUid, pipelineUid);

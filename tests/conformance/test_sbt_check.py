@@ -9,6 +9,7 @@ import pytest
 from harness import Harness
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from shaders import launch, recorder
 from shaders import two_rays as shader
 
 import optixc as ox
@@ -83,6 +84,10 @@ def test_records_out_of_range_empty_and_of_the_wrong_kind(scene: Scene) -> None:
     problems = scene.table([*pair(scene, 1.0), None]).check(scene.pipeline, top)
     assert any("instance 1 (sbt_offset 6), build input 0 (triangles), record 0" in one and "needs hitgroup[7]" in one
                and "two_rays.py:" in one and "the table has 3 hit group records" in one for one in problems)
+    many = scene.table(pair(scene, 1.0)).check(scene.pipeline, scene.instances(*range(0, 2000, 2)))
+    assert [("hitgroup[2], and the table has 2 hit group records (998 more places need records up to hitgroup[1998])" in one)
+            for one in many] == [True, False]
+    assert "hitgroup[3], and the table has 2 hit group records (998 more places need records up to hitgroup[1999])" in many[1]
     (empty,) = scene.table([scene.record("shade", 1.0), None]).check(scene.pipeline, scene.instances(0))
     assert "needs hitgroup[1], which is empty" in empty
     boxes = scene.build([ox.BuildInputCustomPrimitives(BOX)])
@@ -95,6 +100,14 @@ def test_records_out_of_range_empty_and_of_the_wrong_kind(scene: Scene) -> None:
 def test_payloads_and_misses(scene: Scene) -> None:
     swapped = scene.table(list(reversed(pair(scene, 1.0)))).check(scene.pipeline, scene.instances(0))
     assert any("__closesthit__shadow takes a Shadow" in one and "carries Radiance" in one for one in swapped)
+    both = scene.table([*reversed(pair(scene, 1.0))] * 20).check(scene.pipeline, scene.instances(*range(0, 40, 2)))
+    assert [one.split(":")[0] for one in both] == ["hitgroup[0, 2, 4, 6, 8, 10, 12, 14, 16, 18, ...]",
+                                                   "hitgroup[1, 3, 5, 7, 9, 11, 13, 15, 17, 19, ...]"]
+    assert "(sbt_offset 1, sbt_stride 2) carries Shadow" in both[1]
+    misses = [scene.record("miss shadow"), scene.record("miss")]
+    assert [one.split(":")[0] for one in scene.table(pair(scene, 1.0), misses).check(scene.pipeline)] == ["miss[0]", "miss[1]"]
+    (hole,) = scene.table(pair(scene, 1.0), [scene.record("miss"), None]).check(scene.pipeline)
+    assert "needs miss[1], which is empty; if nothing is to run" in hole
     few = scene.table(pair(scene, 1.0), [scene.record("miss")]).check(scene.pipeline)
     assert few == [one for one in few if "needs miss[1], and the table has 1 miss records" in one]
     assert len(few) == 1
@@ -103,6 +116,9 @@ def test_payloads_and_misses(scene: Scene) -> None:
 def test_a_group_that_the_pipeline_does_not_have(harness: Harness, scene: Scene) -> None:
     alone = harness.context.pipeline_create([scene.groups["raygen"]])
     problems = scene.table(pair(scene, 1.0)).check(alone)
+    other = harness.context.program_group_create(raygen=harness.module("launch.py")["__raygen__index"])
+    table = ox.ShaderBindingTable(raygen=other.record(launch.Data(0, 0.0, (0, 0, 0))))
+    assert table.check(alone)[0] == "raygen: __raygen__index is not in the pipeline; add its group to pipeline_create"
     assert "hitgroup[0]: __closesthit__shade is not in the pipeline; add its group to pipeline_create" in problems
 
 
@@ -114,6 +130,34 @@ def test_the_table_in_words(scene: Scene, capsys: pytest.CaptureFixture[str]) ->
     assert "hitgroup[2] empty  <- nobody reaches it" in text
     assert "hitgroup 4 x 48 bytes" in text
     assert "miss[1]   miss __miss__shadow; 0 bytes  <- trace at" in text
+
+
+def test_traces_that_are_known_in_a_launch_only(harness: Harness, scene: Scene) -> None:
+    groups, pipeline = harness.recorder(("tri",), False, False)
+    record = groups["tri", True, True].record(recorder.Record(*[0] * 4, *[recorder.Report(0.0, 0.0, 0, [0] * 8)] * 4))
+    table = ox.ShaderBindingTable(raygen=groups["raygen"].record(), hitgroup=[record])
+    assert table.check(pipeline, scene.instances(0)) == []
+    (line,) = [line for line in table.explain(pipeline).splitlines() if line.startswith("not judged")]
+    assert line.startswith("not judged: sbt_offset and sbt_stride and miss_sbt_index of the trace at")
+
+
+def test_questions_about_no_table_and_no_pipeline(scene: Scene) -> None:
+    table, record = scene.table(pair(scene, 1.0)), scene.record("raygen")
+    for wrong in (lambda: table.check(None), lambda: table.explain(3), lambda: table.check(scene.groups["raygen"])):
+        with pytest.raises(ox.InvalidValueError, match="give the pipeline that is to be launched"):
+            wrong()
+    for thing in (3, "scene", CORNERS):
+        with pytest.raises(ox.InvalidValueError, match="give the accel or transform itself"):
+            table.check(scene.pipeline, thing)
+    make = ox.ShaderBindingTable.from_materials
+    for wrong, message in ((lambda: make(record, ["radiance"], []), "ray_types takes a dict"),
+                           (lambda: make(record, {"a": None}, [3]), r"materials\[0\] takes a dict"),
+                           (lambda: make(record, {"a": None}, 3), "materials takes a list"),
+                           (lambda: make(record, {"a": None}, {"a": None}), "materials takes a list"),
+                           (lambda: make(record, {"a": None}, [{}]).instance_offset(1), "material is 0 to 0, not 1"),
+                           (lambda: table.instance_offset(-1), "at least 0"), (lambda: table.instance_offset("a"), "at least 0")):
+        with pytest.raises(ox.InvalidValueError, match=message):
+            wrong()
 
 
 @settings(max_examples=500, deadline=None)

@@ -37,6 +37,7 @@ class ShaderBindingTable:
         self.hitgroup = _take_all(hitgroup, ProgramGroupKind.HITGROUP, "hitgroup")
         self.callables = _take_all(callables, ProgramGroupKind.CALLABLES, "callables")
         self._ray_types: tuple[str, ...] = ()
+        self._material_count: int | None = None
         self._lock = threading.Lock()
         self._changed: set[Record] = set()
         self._packed: dict[int, _PackedTable] = {}
@@ -61,13 +62,17 @@ class ShaderBindingTable:
         if not isinstance(ray_types, Mapping) or not ray_types:
             raise InvalidValueError("ray_types takes a dict of ray type names and their miss records, at least one")
         names = tuple(ray_types)
+        if not isinstance(materials, Sequence):
+            raise InvalidValueError(f"materials takes a list with a dict of records for each material, not {type(materials).__name__}")
         for number, material in enumerate(materials):
+            if not isinstance(material, Mapping):
+                raise InvalidValueError(f"materials[{number}] takes a dict of ray type names and records, not {type(material).__name__}")
             unknown = [name for name in material if name not in ray_types]
             if unknown:
                 raise InvalidValueError(f"materials[{number}] has a record for {unknown[0]!r}, which is no ray type; there are {names}")
         hitgroup = [material.get(name) for material in materials for name in names]
         made = cls(raygen, list(ray_types.values()), hitgroup, callables, exception)
-        made._ray_types = names
+        made._ray_types, made._material_count = names, len(materials)
         return made
 
     @property
@@ -83,6 +88,10 @@ class ShaderBindingTable:
 
     def instance_offset(self, material: int) -> int:
         """The sbt_offset of instances of a material."""
+        is_number = isinstance(material, int) and not isinstance(material, bool)
+        if not is_number or material < 0 or (self._material_count is not None and material >= self._material_count):
+            known = f"0 to {self._material_count - 1}" if self._material_count else "a number of at least 0"
+            raise InvalidValueError(f"material is {known}, not {material!r}")
         return material * max(1, self.stride)
 
     def explain(self, pipeline: Any = None, traversable: Any = None) -> str:
