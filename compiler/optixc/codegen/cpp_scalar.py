@@ -13,6 +13,7 @@ from optixc.codegen.declarations import declarations, is_changed
 from optixc.codegen.names import string_literal
 from optixc.codegen.needs import Options
 from optixc.codegen.writer import Writer
+from optixc.ir.control import ends_in_loop, polls
 from optixc.ir.nodes import (
     Assert,
     Assign,
@@ -64,6 +65,8 @@ class ScalarFunction:
             for local in self._declarations.at_top:
                 self._writer.line(f"{self._unread(local)}{self._types.name(local.type)} {self._names.locals[local.name]}{{}};")
             self._body(self._function.body)
+            if not isinstance(self._function.result, Void) and ends_in_loop(self._function.body):
+                self._writer.line("return {};")
         self._writer.leave_source()
         self._writer.line()
 
@@ -163,9 +166,9 @@ class ScalarFunction:
 
     def _while(self, statement: While) -> None:
         """Loops that may never end look whether the launch is to stop."""
-        polls = [] if statement.bounded else [f"!oxrt::isCancelled({self._names.thread})"]
+        goes_on = [f"!oxrt::isCancelled({self._names.thread})"] if polls(statement) else []
         if statement.condition_body:
-            with self._writer.block(f"while ({' '.join(polls) or 'true'})", statement.span):
+            with self._writer.block(f"while ({' '.join(goes_on) or 'true'})", statement.span):
                 self._body(statement.condition_body)
                 self._writer.line(f"if (!{self._expressions.at(statement.condition, UNARY)})", statement.span)
                 with self._writer.indented():
@@ -173,8 +176,8 @@ class ScalarFunction:
                 self._body(statement.body)
             return
         is_endless = isinstance(statement.condition, Literal) and statement.condition.value is True
-        conditions = [self._expressions.at(statement.condition, AND + 1 if polls else 0)] if not (is_endless and polls) else []
-        with self._writer.block(f"while ({' && '.join(conditions + polls)})", statement.span):
+        conditions = [self._expressions.at(statement.condition, AND + 1 if goes_on else 0)] if not (is_endless and goes_on) else []
+        with self._writer.block(f"while ({' && '.join(conditions + goes_on)})", statement.span):
             self._body(statement.body)
 
     def _for(self, statement: ForRange) -> None:
@@ -190,6 +193,10 @@ class ScalarFunction:
             range_name = self._calls.fresh("range")
             head = f"for (oxrt::Range<{type_}> {range_name}({start}, {stop}, {step}); {range_name}.next({target});)"
         with self._writer.block(head, statement.span):
+            if polls(statement):
+                self._writer.line(f"if (oxrt::isCancelled({self._names.thread}))", statement.span)
+                with self._writer.indented():
+                    self._writer.line("break;")
             self._body(statement.body)
 
     def _counts_plainly(self, statement: ForRange) -> bool:

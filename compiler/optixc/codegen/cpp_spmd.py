@@ -19,6 +19,7 @@ from optixc.codegen.declarations import declarations, is_changed
 from optixc.codegen.names import Scope, string_literal
 from optixc.codegen.needs import Options
 from optixc.codegen.writer import Writer
+from optixc.ir.control import ends_in_loop, polls
 from optixc.ir.nodes import (
     Assert,
     Assign,
@@ -84,8 +85,11 @@ class LaneFunction:
                 self._homes[local.name] = self._mask
                 self._writer.line(f"{self._unread(local)}{self._type(local)} {self._names.locals[local.name]}{{}};")
             self._body(self._function.body)
-            if self._clone.returns_apart and not isinstance(self._function.result, Void):
-                self._writer.line("return result;")
+            if not isinstance(self._function.result, Void):
+                if self._clone.returns_apart:
+                    self._writer.line("return result;")
+                elif ends_in_loop(self._function.body):
+                    self._writer.line("return {};")
         self._writer.leave_source()
         self._writer.line()
 
@@ -290,8 +294,8 @@ class LaneFunction:
             return False
         return any(isinstance(inner, Return) or self._clones.analysis.leaves(inner) for inner in statements((loop,)))
 
-    def _poll(self, statement: While) -> None:
-        if not statement.bounded:
+    def _poll(self, statement: While | ForRange) -> None:
+        if polls(statement):
             self._writer.line(f"if (oxrt::isCancelled({self._names.thread}))", statement.span)
             with self._writer.indented():
                 self._writer.line("break;")
@@ -315,6 +319,7 @@ class LaneFunction:
             self._writer.line(f"{range_type} {turns}({', '.join(bounds)});", statement.span)
             head = f"while ({self._next_turn(turns, name, loop, bounds_vary, is_varying)})"
         with self._writer.block(head, statement.span):
+            self._poll(statement)
             if loop is None:
                 self._body(statement.body)
             else:

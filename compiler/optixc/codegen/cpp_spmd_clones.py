@@ -9,6 +9,7 @@ from optixc.codegen.cpp_signatures import FunctionNames, Signatures, used_parame
 from optixc.codegen.cpp_spmd_types import WideTypes
 from optixc.codegen.names import Scope
 from optixc.codegen.needs import options_of
+from optixc.ir.control import polls
 from optixc.ir.intrinsic_rows import INTRINSICS
 from optixc.ir.intrinsics import Effect, State
 from optixc.ir.nodes import (
@@ -25,6 +26,7 @@ from optixc.ir.nodes import (
     ParameterRole,
     Pipeline,
     Print,
+    Stmt,
     Trace,
     While,
     is_reference_type,
@@ -145,14 +147,14 @@ class Clones:
         return text if is_small or is_assigned else f"const {text}&"
 
 
-def _statement_acts(statement: object) -> bool:
+def _statement_acts(statement: Stmt) -> bool:
     match statement:
         case Trace() | CallCallable() | Print():
             return True
         case CallIntrinsic(name=name):
             return INTRINSICS[name].effect is not Effect.PURE or INTRINSICS[name].state is not State.NONE
-        case While(bounded=False):
-            return True
+        case While():
+            return polls(statement)
         case Assign(target=target):
             node: object = target
             while node is not None and not isinstance(node, ElementRef):

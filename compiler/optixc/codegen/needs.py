@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import dataclass, fields, replace
 
+from optixc.ir.control import polls
 from optixc.ir.intrinsic_rows import INTRINSICS
 from optixc.ir.intrinsics import Effect, State
 from optixc.ir.nodes import (
@@ -17,6 +18,7 @@ from optixc.ir.nodes import (
     CallIntrinsic,
     ElementRef,
     Expr,
+    ForRange,
     Function,
     IntrinsicCall,
     ParamsRef,
@@ -124,8 +126,8 @@ def _of_statement(statement: Stmt, options: Options) -> Needs:
             return Needs(thread=True)
         case Assert():
             return Needs(thread=options.is_checked)
-        case While():
-            return Needs(thread=not statement.bounded)
+        case While() | ForRange():
+            return Needs(thread=polls(statement))
         case CallIntrinsic(name=name):
             return _of_intrinsic(name, options)
         case _:

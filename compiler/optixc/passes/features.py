@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 
+from optixc.ir.control import polls
 from optixc.ir.intrinsic_rows import ATOMIC_NAMES, INTRINSICS
 from optixc.ir.intrinsics import State
 from optixc.ir.nodes import (
@@ -13,6 +14,7 @@ from optixc.ir.nodes import (
     CallIntrinsic,
     ElementRef,
     Expr,
+    ForRange,
     Function,
     IntrinsicCall,
     Literal,
@@ -77,7 +79,7 @@ def features(pipeline: Pipeline) -> Features:
             _first(pipeline, "atomics", lambda s: isinstance(s, CallIntrinsic) and s.name in ATOMIC_NAMES),
             _first_expression(pipeline, "textures", lambda e: isinstance(e, IntrinsicCall) and e.name.startswith("tex")),
             _first(pipeline, "print", lambda s: isinstance(s, Print)),
-            _first(pipeline, "loops without a bound (they poll for cancellation)", lambda s: isinstance(s, While) and not s.bounded),
+            _first(pipeline, "loops that poll for cancellation", lambda s: isinstance(s, While | ForRange) and polls(s)),
             _option("assertions", options.debug or options.validation, _first(pipeline, "", lambda s: isinstance(s, Assert)).span),
             _option("array bounds checks", options.debug or options.validation, _element(pipeline)),
             _option("validation", options.validation),

@@ -1,6 +1,7 @@
 /* Made by optixc. Compiled features:
    closesthit programs: shader.py:52
    print: shader.py:46
+   loops that poll for cancellation: shader.py:31
    assertions: shader.py:45
    array bounds checks: shader.py:43
    validation: asked for by the pipeline's options
@@ -36,9 +37,13 @@ struct RadiancePrograms : oxrt::NoPrograms {
 };
 
 #line 29 "shader.py"
-float total(State& state, int32_t count) {
+float total(OxrtThread& thread, State& state, int32_t count) {
     float result = 0.0f;
     for (int32_t k = 0; k < count; ++k) {
+#line 31 "shader.py"
+        if (oxrt::isCancelled(thread))
+            break;
+#line 32 "shader.py"
         result = result + state.weights.load(k);
         if (state.weights.contains(k))
 #line 33 "shader.py"
@@ -66,7 +71,7 @@ void raygen_checked(OxrtThread& thread) {
     oxrt::print(thread, ", ", "\n", "pixel", i.x, i.y, ray.color);
     oxrt::float3 value = ray.color;
 #line 47 "shader.py"
-    float result = total(state, 3);
+    float result = total(thread, state, 3);
 #line 47 "shader.py"
     if (oxrt::checked(thread).contains(params.values, i.y, i.x))
 #line 47 "shader.py"
@@ -81,7 +86,7 @@ void closesthit_white(Radiance& ray) {
     ray.color = oxrt::float3(1.0f);
 }
 
-#line 85 "pipeline.cpp"
+#line 90 "pipeline.cpp"
 void RadiancePrograms::closestHit(oxrt::Ray& trace, Payload& payload, const OxrtRecordHeader& record) {
     switch (record.programs[oxrt::SLOT_CLOSESTHIT]) {
         case number::closesthit_white: closesthit_white(payload); break;

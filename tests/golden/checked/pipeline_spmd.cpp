@@ -1,6 +1,7 @@
 /* Made by optixc. Compiled features:
    closesthit programs: shader.py:52
    print: shader.py:46
+   loops that poll for cancellation: shader.py:31
    assertions: shader.py:45
    array bounds checks: shader.py:43
    validation: asked for by the pipeline's options
@@ -83,6 +84,10 @@ Wide<float> total_lanes([[maybe_unused]] Lanes& thread, [[maybe_unused]] Mask ma
 Wide<float> total_lanes([[maybe_unused]] Lanes& thread, [[maybe_unused]] Mask mask, Wide<State>& state, int32_t count) {
     Wide<float> result_ = Wide<float>(0.0f);
     for (int32_t k = 0; k < count; ++k) {
+#line 31 "shader.py"
+        if (oxrt::isCancelled(thread))
+            break;
+#line 32 "shader.py"
         result_ = result_ + oxrt::loadItem<LANES>(state.weights, k);
         oxrt::assign(mask, state.weights[k], 0.0f);
     }
@@ -119,7 +124,7 @@ void closesthit_white_lanes([[maybe_unused]] Lanes& thread, [[maybe_unused]] Mas
     oxrt::assign(mask, ray.color, oxrt::float3(1.0f));
 }
 
-#line 123 "pipeline.cpp"
+#line 128 "pipeline.cpp"
 void RadianceProgramsLanes::closestHit(Rays& trace, Mask mask, Payload& payload) {
     const Wide<int32_t> program = oxrt::recordPrograms(trace.records, mask, oxrt::SLOT_CLOSESTHIT);
     if (const Mask own = mask & (program == int32_t(number::closesthit_white)); oxrt::any(own))

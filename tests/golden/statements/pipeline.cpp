@@ -1,5 +1,5 @@
 /* Made by optixc. Compiled features:
-   loops without a bound (they poll for cancellation): shader.py:56
+   loops that poll for cancellation: shader.py:43
 */
 #include <oxrt/device.h>
 
@@ -55,6 +55,10 @@ void raygen_main(OxrtThread& thread) {
     uint32_t i = oxrt::getLaunchIndex(thread).x;
     int32_t total = 0;
     for (int32_t k : oxrt::Range<int32_t>(0, params.count, 1)) {
+#line 43 "shader.py"
+        if (oxrt::isCancelled(thread))
+            break;
+#line 44 "shader.py"
         if (k == 3) {
             continue;
         } else if (k > 10) {
@@ -65,6 +69,10 @@ void raygen_main(OxrtThread& thread) {
     }
 #line 50 "shader.py"
     for (int32_t k : oxrt::Range<int32_t>(10, 0, params.step)) {
+#line 50 "shader.py"
+        if (oxrt::isCancelled(thread))
+            break;
+#line 51 "shader.py"
         total = total - k;
     }
 #line 52 "shader.py"
@@ -111,7 +119,7 @@ void raygen_main(OxrtThread& thread) {
     params.numbers.at(i) = total;
 }
 
-#line 115 "pipeline.cpp"
+#line 123 "pipeline.cpp"
 void run_raygen_main(OxrtThread* thread, const OxrtTile* tile) {
     oxrt::forEachIndex(*thread, *tile, [thread] {
         raygen_main(*thread);

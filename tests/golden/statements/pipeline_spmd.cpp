@@ -1,5 +1,5 @@
 /* Made by optixc. Compiled features:
-   loops without a bound (they poll for cancellation): shader.py:56
+   loops that poll for cancellation: shader.py:43
 */
 #include <oxrt/device.h>
 
@@ -95,6 +95,10 @@ void raygen_main_lanes([[maybe_unused]] Lanes& thread, [[maybe_unused]] Mask mas
     oxrt::Range<int32_t> range(0, params.count, 1);
 #line 43 "shader.py"
     while (range.next(k)) {
+#line 43 "shader.py"
+        if (oxrt::isCancelled(thread))
+            break;
+#line 44 "shader.py"
         if (k == 3) {
             continue;
         }
@@ -113,6 +117,10 @@ void raygen_main_lanes([[maybe_unused]] Lanes& thread, [[maybe_unused]] Mask mas
     oxrt::Range<int32_t> range_(10, 0, params.step);
 #line 50 "shader.py"
     while (range_.next(k)) {
+#line 50 "shader.py"
+        if (oxrt::isCancelled(thread))
+            break;
+#line 51 "shader.py"
         total = total - k;
     }
 #line 52 "shader.py"
@@ -202,7 +210,7 @@ void raygen_main_lanes([[maybe_unused]] Lanes& thread, [[maybe_unused]] Mask mas
     }
 }
 
-#line 206 "pipeline.cpp"
+#line 214 "pipeline.cpp"
 void run_raygen_main(OxrtThread* thread, const OxrtTile* tile) {
     oxrt::runBlocks<LANES>(*thread, *tile, [](Lanes& lanes, Mask mask) {
         raygen_main_lanes(lanes, mask);
