@@ -42,7 +42,8 @@ class DeviceContext(Context):
         threads: int | None = None,
     ) -> None:
         super().__init__(validation, log_callback, threads)
-        self.cache = Cache(Path(cache_dir) if cache_dir is not None else None, lambda text: self.log(LOG_WARNING, "cache", text))
+        folder = _folder(cache_dir, "cache_dir") if cache_dir is not None else None
+        self.cache = Cache(folder, lambda text: self.log(LOG_WARNING, "cache", text))
 
     def module_create(
         self,
@@ -58,7 +59,7 @@ class DeviceContext(Context):
         """
         _ = self.handle
         values = plain_values(bound_values)
-        unit = self._open(source, [Path(folder) for folder in include_dirs])
+        unit = self._open(source, _folders(include_dirs))
         driver.check_bound_values(unit, {name: bound.value for name, bound in values.items()})
         return Module(unit, unit.programs, values)
 
@@ -72,7 +73,7 @@ class DeviceContext(Context):
         """A module that is compiled when its task is executed, on any thread; `get_compilation_state()` tells how far it is."""
         _ = self.handle
         values = plain_values(bound_values)
-        folders = [Path(folder) for folder in include_dirs]
+        folders = _folders(include_dirs)
 
         def compile_source() -> tuple[driver.Unit, list[dict[str, Any]]]:
             unit = self._open(source, folders)
@@ -95,9 +96,7 @@ class DeviceContext(Context):
 
     def set_cache_location(self, location: str | Path) -> None:
         """Another folder for compiled pipelines. Raises if the cache is on and nothing can be written there, and switches it off."""
-        if not str(location):
-            raise InvalidValueError("the cache location is empty; give a folder")
-        self.cache.folder = Path(location).absolute()
+        self.cache.folder = _folder(location, "the cache location").absolute()
         if self.cache.enabled:
             self._use_cache()
 
@@ -245,3 +244,15 @@ class DeviceContext(Context):
         format), and optionally `histogram`, rows of (count, subdivision_level, format), which must agree with them."""
         _ = self.handle
         return build_array(self, data, descs, histogram, flags)
+
+
+def _folder(path: Any, what: str) -> Path:
+    if not isinstance(path, str | Path) or not str(path) or "\0" in str(path):
+        raise InvalidValueError(f"{what} takes a folder, a path that is not empty, not {path!r:.60}")
+    return Path(path)
+
+
+def _folders(include_dirs: Any) -> list[Path]:
+    if isinstance(include_dirs, str | Path) or not isinstance(include_dirs, Sequence):
+        raise InvalidValueError(f"include_dirs takes a list of folders, not {include_dirs!r:.60}")
+    return [_folder(folder, "include_dirs") for folder in include_dirs]

@@ -43,6 +43,9 @@ class PipelineCompileOptions:
             may_be_absent = value is None and (name, limit) in counts
             if not may_be_absent and (not isinstance(value, int) or isinstance(value, bool) or not 0 <= value <= limit):
                 raise InvalidValueError(f"{name} must be 0 to {limit}, not {value!r}")
+        kinds = self.uses_primitive_type_flags
+        if not isinstance(kinds, int) or isinstance(kinds, bool) or not 0 <= kinds < 1 << 32:
+            raise InvalidValueError(f"uses_primitive_type_flags combines PrimitiveTypeFlags, it is not {kinds!r}")
         for name in ("uses_motion_blur", "allow_opacity_micromaps", "allow_clustered_geometry"):
             if getattr(self, name) not in (False, True):
                 raise InvalidValueError(f"{name} must be False or True, not {getattr(self, name)!r}")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import threading
 import warnings
 from functools import partial
 from pathlib import Path
@@ -250,3 +251,68 @@ def test_T035_a_program_that_two_files_define(tmp_path: Path) -> None:
     with pytest.raises(ox.PipelineLinkError, match=r"__miss__m is defined more than once: in .*one\.py and .*two\.py") as caught:
         context.pipeline_create(groups)
     assert caught.value.code == 7251
+
+
+@pytest.mark.parametrize("simd", [1, 8, 16])
+def test_files_of_one_pipeline_keep_their_helpers_apart(tmp_path: Path, simd: int) -> None:
+    common = ("@ox.struct\nclass Params:\n    out: ox.Array[ox.float32]\n\n\n@ox.payload\nclass Ray:\n    x: float\n\n\n"
+              "params = ox.launch_params(Params)\n\n\n")
+    helper = "def value(x: float) -> float:\n    return x * {}\n\n\n"
+    raygen = ("@ox.program\ndef __raygen__r():\n    ray = Ray(value(1.0))\n"
+              "    ox.trace(ox.Traversable(0), float3(0.0), float3(1.0), payload=ray)\n    params.out[ox.get_launch_index().x] = ray.x\n")
+    miss = "@ox.program\ndef __miss__m(ray: Ray):\n    ray.x = value(ray.x) + both(ray.x)\n"
+    written(tmp_path, "@ox.device\ndef both(x: float) -> float:\n    return x + 100.0\n", "tools.py")
+    context = ox.DeviceContext()
+    first = context.module_create(written(tmp_path, common + helper.format("2.0") + raygen, "first.py"))
+    second = context.module_create(written(tmp_path, "from tools import both\n\n\n" + common + helper.format("10.0") + miss, "second.py"))
+    start, end = context.program_group_create(raygen=first["__raygen__r"]), context.program_group_create(miss=second["__miss__m"])
+    pipeline = context.pipeline_create([start, end], simd=simd)
+
+    @ox.struct
+    class Params:
+        out: ox.Array[ox.float32]
+
+    out = np.zeros(20, np.float32)
+    pipeline.launch(Params(out), ox.ShaderBindingTable(raygen=start.record(), miss=[end.record()]), 20)
+    assert out.tolist() == [2.0 * 10.0 + 2.0 + 100.0] * 20
+
+
+def test_T009_a_callback_is_never_called_with_the_level_of_another(tmp_path: Path) -> None:
+    """Callbacks that accept other levels are swapped while threads log."""
+    context = ox.DeviceContext(log_callback=lambda *message: None)
+    wrong: list[tuple[int, int]] = []
+
+    def callback(highest: int) -> Any:
+        return lambda level, tag, text: wrong.append((highest, level)) if level > highest else None
+
+    stop = threading.Event()
+
+    def work() -> None:
+        while not stop.is_set():
+            for level in (1, 2, 3, 4):
+                context.log(level, "TEST", "text")
+
+    threads = [threading.Thread(target=work) for _ in range(4)]
+    for thread in threads:
+        thread.start()
+    for number in range(2000):
+        level = 1 + number % 4
+        context.set_log_callback(callback(level), level)
+    stop.set()
+    for thread in threads:
+        thread.join()
+    assert wrong == []
+
+
+def test_an_exception_in_a_callback_stops_nothing(tmp_path: Path, capfd: pytest.CaptureFixture[str]) -> None:
+    def callback(level: int, tag: str, text: str) -> None:
+        raise ValueError(f"thrown for {tag}")
+
+    context = ox.DeviceContext(log_callback=callback)
+    with pytest.raises(ox.CompileError, match="is not defined"):
+        context.module_create(written(tmp_path, program("__raygen__r", "x = unknown_name")))
+    module = context.module_create(SHADERS / "bound.py")
+    context.pipeline_create([context.program_group_create(raygen=module["__raygen__branch"])], bound_values={"k": 3})
+    told = capfd.readouterr().err
+    assert told.count("optixc: exception in a log callback, ignored:") >= 3
+    assert "ValueError: thrown for COMPILER" in told

@@ -77,12 +77,19 @@ SIZES = ox.StackSizes(css_rg=100, css_ms=40, css_ch=200, css_ah=50, css_is=60, c
 def test_T073_the_formula_of_the_guide() -> None:
     assert ox.util_compute_stack_sizes(SIZES, 2, 2, 3) == (60, 60, 680)
     assert ox.util_compute_stack_sizes(SIZES, 0, 2, 3)[2] == 160
+    # The plain sum of the guide's first listing is an upper bound: RG + tree + depth x (CH + tree) + IS + AH.
+    plain = 100 + 60 + 2 * (200 + 60) + 60 + 50
+    assert (plain, plain >= ox.util_compute_stack_sizes(SIZES, 2, 2, 3)[2]) == (790, True)
     wide = ox.StackSizes(css_rg=100, css_ms=10, css_ch=10, css_ah=500, css_is=600)
     assert ox.util_compute_stack_sizes(wide, 1, 0, 0)[2] == 1200
 
 
 def test_T074_callables_told_apart_and_trees() -> None:
     assert ox.util_compute_stack_sizes_dc_split(SIZES, 16, 48, 2, 2, 2, 1) == (32, 48, 680)
+    other = ox.StackSizes(**{**vars(SIZES), "dss_dc": 1 << 20})
+    assert ox.util_compute_stack_sizes_dc_split(other, 16, 48, 2, 2, 2, 1) == (32, 48, 680)
+    other = ox.StackSizes(**{**vars(SIZES), "css_cc": 1 << 20})
+    assert ox.util_compute_stack_sizes_css_cc_tree(other, max(3 * 100, 2 * 200), 2, 3)[2] == 100 + 400 + 600 + 600
     assert ox.util_compute_stack_sizes_css_cc_tree(SIZES, 400, 2, 3) == (60, 60, 100 + 400 + 600 + 600)
 
 
@@ -97,6 +104,11 @@ def test_T075_the_simple_path_tracer() -> None:
     raygen, miss_1, miss_2 = Known(css_rg=64), Known(css_ms=32), Known(css_ms=16)
     hit_1, hit_2 = Known(css_ch=320), Known(css_ch=48)
     assert ox.util_compute_stack_sizes_simple_path_tracer(raygen, miss_1, [hit_1], miss_2, [hit_2]) == (0, 0, 432)
+    assert ox.util_compute_stack_sizes_simple_path_tracer(raygen, miss_1, [], miss_2, []) == (0, 0, 64 + 32)
+    total = ox.StackSizes()
+    for group in (raygen, miss_1, miss_2, hit_1, hit_2):
+        ox.util_accumulate_stack_sizes(group, total)
+    assert ox.util_compute_stack_sizes(total, 2, 0, 0) == (0, 0, 704)
 
 
 def test_T076_wrong_arguments() -> None:

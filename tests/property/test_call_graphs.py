@@ -145,4 +145,4 @@ def test_all_ways_run_random_call_graphs_alike(request: pytest.FixtureRequest, m
     CallGraphs.ways = Ways()
     run_state_machine_as_test(CallGraphs, settings=settings(
         max_examples=graphs, stateful_step_count=20, deadline=None, database=None, derandomize=not long_run,
-        phases=[Phase.generate, Phase.shrink] if long_run else [Phase.generate], suppress_health_check=list(HealthCheck)))
+        phases=[Phase.generate], suppress_health_check=list(HealthCheck)))

@@ -37,6 +37,10 @@ class Accel:
     def __init__(self, context: Context, inputs: Sequence[BuildInput], build_flags: int, motion_options: MotionOptions | None) -> None:
         self._accel: Any = None
         self._context = context
+        if not isinstance(build_flags, int) or isinstance(build_flags, bool) or not 0 <= build_flags < 1 << 32:
+            raise InvalidValueError(f"build_flags combines BuildFlags, it is not {build_flags!r}")
+        if motion_options is not None and not isinstance(motion_options, MotionOptions):
+            raise InvalidValueError(f"motion_options takes a MotionOptions, not {type(motion_options).__name__}")
         self._build_flags = int(build_flags)
         self._motion = motion_options
         self._inputs: tuple[BuildInput, ...] = tuple(inputs) if isinstance(inputs, Sequence) else ()

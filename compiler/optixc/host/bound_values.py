@@ -78,9 +78,9 @@ def _leaves(name: str, value: Any) -> list[tuple[str, Plain]]:
         return [(name, value)]
     try:
         numbers = tuple(getattr(number, "item", lambda number=number: number)() for number in value)
-    except TypeError:
+    except (TypeError, ValueError):
         item = getattr(value, "item", None)
-        if item is not None:
+        if item is not None and getattr(value, "size", 1) == 1:
             return _leaves(name, item())
         raise InvalidValueError(f"bound value {name!r} takes a number, a vector or a struct of them, not {value!r:.60}") from None
     if not numbers:

@@ -42,7 +42,7 @@ class Context:
             raise InvalidValueError(f"threads must be None or at least 1, not {threads!r}")
         if log_callback is not None and not callable(log_callback):
             raise InvalidValueError(f"log_callback must be callable, not {log_callback!r}")
-        if log_level not in range(5):
+        if isinstance(log_level, bool) or log_level not in range(5):
             raise InvalidValueError(f"log_level must be 0 to 4, not {log_level!r}")
         self.validation = bool(validation)
         self._log: tuple[LogCallback | None, int] = (log_callback, log_level)
@@ -96,7 +96,7 @@ class Context:
         """Replaces the callback and the level, both at once; None for no callback, level 0 for silence."""
         if log_callback is not None and not callable(log_callback):
             raise InvalidValueError(f"log_callback must be callable or None, not {log_callback!r}")
-        if level not in range(5):
+        if isinstance(level, bool) or level not in range(5):
             raise InvalidValueError(f"the log level must be 0 to 4, not {level!r}")
         self._log = (log_callback, level)
         library.check(library.lib().oxrtContextSetLogCallback(self.handle, self._c_callback, library.ffi().NULL, level))

@@ -19,6 +19,7 @@ from optixc.host.vertex_formats import to_float3
 
 Keys = Any
 _KEY_LIMIT = 1 << 16
+_ALL_MOTION_FLAGS = int(MotionFlags.START_VANISH | MotionFlags.END_VANISH)
 _IDENTITY = (1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0)
 
 
@@ -35,9 +36,14 @@ class MotionOptions:
         """Writes the options into an OxrtMotionOptions."""
         if not isinstance(self.num_keys, int | np.integer) or not 0 <= self.num_keys < _KEY_LIMIT:
             raise InvalidValueError(f"MotionOptions.num_keys must be 0 to {_KEY_LIMIT - 1}, not {self.num_keys!r}")
-        target.numKeys = int(self.num_keys)
-        target.flags = int(self.flags)
-        target.timeBegin, target.timeEnd = float(self.time_begin), float(self.time_end)
+        if not isinstance(self.flags, int) or not 0 <= self.flags <= _ALL_MOTION_FLAGS:
+            raise InvalidValueError(f"MotionOptions.flags combines MotionFlags, it is not {self.flags!r}")
+        try:
+            times = float(self.time_begin), float(self.time_end)
+        except (TypeError, ValueError) as error:
+            raise InvalidValueError(f"the times of MotionOptions are numbers, not {self.time_begin!r} and {self.time_end!r}") from error
+        target.numKeys, target.flags = int(self.num_keys), int(self.flags)
+        target.timeBegin, target.timeEnd = times
 
 
 @dataclass(frozen=True)
@@ -156,7 +162,11 @@ class Records:
         count = self.num_sbt_records
         if not isinstance(count, int) or not 1 <= count <= 1 << 24:
             raise InvalidValueError(f"{where}: num_sbt_records must be 1 to 2**24, not {count!r}")
-        words = np.atleast_1d(np.asarray(self.flags, np.uint32))
+        try:
+            words = np.atleast_1d(np.asarray(self.flags, np.uint32))
+        except (TypeError, ValueError, OverflowError) as error:
+            wanted = "combines GeometryFlags, one word or one for each record"
+            raise InvalidValueError(f"{where}: flags {wanted}, not {self.flags!r:.60}") from error
         if words.ndim != 1 or words.size not in (1, count):
             raise InvalidValueError(f"{where}: flags is one word or one for each of the {count} records, not {words.size} words")
         words = np.ascontiguousarray(np.broadcast_to(words, count))

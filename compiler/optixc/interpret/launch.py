@@ -30,6 +30,8 @@ def interpret(
     Raises what a program raises (AssertionError, IndexError for an index outside of an array), LaunchFailureError for traces nested
     too deep, InvalidValueError for a size or index that a launch would refuse.
     """
+    if not isinstance(pipeline, Pipeline):
+        raise InvalidValueError(f"interpret takes a pipeline, not {type(pipeline).__name__}")
     extent, place = _three(size, "size"), _three(index, "index", missing=0)
     if any(one >= limit for one, limit in zip(place, extent, strict=True)):
         raise InvalidValueError(f"index {place} lies outside of the launch size {extent}")

@@ -167,6 +167,8 @@ class Machine:
         return tuple(getattr(payload, field.name) for field in type_.fields)
 
     def _trace(self, name: str, ray: tuple[Any, ...], type_: t.Struct | None, words: Any) -> None:
+        if name == "invoke" and native.bind("hit_object_is_nop", (), t.BOOL)(self.hit_object_state()):
+            return
         if name != "traverse" and len(self._payload_types) >= self._max_trace_depth:
             self._too_deep()
             return
