@@ -177,6 +177,56 @@ def test_collision_queries_agree_with_brute_force() -> None:
     assert "all answers agree" in output
 
 
+def test_hair_shows_tresses_of_three_colours(tmp_path: Path) -> None:
+    size = ("--width", 96, "--height", 72, "--strands", 700, "--samples", 8)
+    output = run("08_hair", *size, "--output", tmp_path / "a.exr")
+    assert "2100 hairs of 60900 segments" in output
+    image = ox.read_image(tmp_path / "a.exr")[20:36, :, :3]
+    brown, red, blond = (image[:, center - 6 : center + 6].mean(axis=(0, 1)) for center in (23, 48, 73))
+    assert brown.sum() < red.sum() < blond.sum()
+    # Melanin takes blue before red; the wall is bluish
+    for color in (brown, red, blond):
+        assert color[0] > 1.15 * color[2]
+    assert image[:, :3].mean(axis=(0, 1))[0] < image[:, :3].mean(axis=(0, 1))[2]
+
+
+def test_motion_blur_is_where_things_move(tmp_path: Path) -> None:
+    for shutter in (0.0, 1.0):
+        size = ("--width", 96, "--height", 64, "--samples", 4, "--shutter", shutter)
+        output = run("09_motion_blur", *size, "--output", tmp_path / f"{shutter}.exr")
+        assert "8 things, 5 of them moving" in output
+    still, blurred = (ox.read_image(tmp_path / f"{shutter}.exr")[:, :, :3] for shutter in (0.0, 1.0))
+    changed = np.abs(still - blurred).max(axis=2) > 0.02
+    assert not changed[:8].any(), "the sky stands still"
+    assert not changed[30:44, 61:63].all(axis=1).any(), "so does the pole of the flag"
+    moving = {"wheel": (24, 40, 40, 56), "ball": (40, 54, 66, 82), "flag": (11, 26, 84, 90)}
+    for name, (top, bottom, left, right) in moving.items():
+        assert changed[top:bottom, left:right].mean() > 0.15, name
+
+
+def test_instances_make_a_forest(tmp_path: Path) -> None:
+    size = ("--width", 96, "--height", 54, "--samples", 2, "--trees", 20_000)
+    output = run("10_instances", *size, "--output", tmp_path / "a.exr")
+    assert re.search(r"20002 instances built in \d+\.\d\d s, \d+ MiB", output)
+    image = ox.read_image(tmp_path / "a.exr")[:, :, :3]
+    sky, land = image[:10], image[30:]
+    assert (sky[..., 2] > sky[..., 0]).mean() > 0.9 and sky.std() < 0.3
+    assert (land[..., 1] > land[..., 2]).mean() > 0.8
+    assert land.mean() < 0.6 * sky.mean()
+
+
+def test_micromaps_change_the_time_of_cutouts_and_not_the_picture(tmp_path: Path) -> None:
+    saved = []
+    for level in (1, 6):
+        size = ("--width", 64, "--height", 64, "--samples", 2, "--leaves", 4, "--level", level)
+        output = run("11_cutouts", *size, "--output", tmp_path / f"{level}.exr")
+        saved.append(float(re.search(r"saved +(-?\d+\.\d) %", output)[1]))
+    assert saved[0] < 30.0
+    assert saved[1] > 85.0
+    coarse, fine = (ox.read_image(tmp_path / f"{level}.exr") for level in (1, 6))
+    np.testing.assert_array_equal(coarse, fine)
+
+
 def test_the_triangle_from_cpp_is_the_one_from_python(tmp_path: Path) -> None:
     cmake = Path(sys.executable).with_name("cmake")
     if not cmake.exists():
