@@ -67,20 +67,22 @@ def bake_opacity_micromap(
         raise InvalidValueError(f'filter is "linear" or "nearest" and wrap "repeat" or "clamp", not {filter!r} and {wrap!r}')
     sampler = _Sampler(picture, cutoff, filter == "linear", wrap == "repeat")
     parts = np.stack(micromap_index_to_base_barycentrics(np.arange(4**level), level)).astype(np.float64)
+    # Foliage repeats its texture coordinates: equal triangles are looked at once
+    unlike, of_triangle, uses = np.unique(corners.reshape(-1, 6), axis=0, return_inverse=True, return_counts=True)
     step = max(1, _AT_ONCE // 4**level)
     maps: dict[bytes, int] = {}
-    chosen = np.zeros(len(corners), np.int32)
+    chosen = np.zeros(len(unlike), np.int32)
     known = 0
-    for first in range(0, len(corners), step):
-        states = sampler.states(corners[first : first + step], parts)
-        known += int(np.count_nonzero(states <= OPAQUE))
+    for first in range(0, len(unlike), step):
+        states = sampler.states(unlike[first : first + step].reshape(-1, 3, 2), parts)
+        known += int(np.count_nonzero(states <= OPAQUE, axis=1) @ uses[first : first + step])
         for number, row in enumerate(states):
             if (row == row[0]).all():
                 chosen[first + number] = -1 - int(row[0])
             else:
                 chosen[first + number] = maps.setdefault(row.tobytes(), len(maps))
     made = tuple(OpacityMicromap(np.frombuffer(key, np.uint8), level, OpacityMicromapFormat.FORMAT_4_STATE) for key in maps)
-    return BakedOpacity(made, chosen, known / max(1, len(corners) * 4**level))
+    return BakedOpacity(made, chosen[of_triangle.ravel()], known / max(1, len(corners) * 4**level))
 
 
 def _picture(alpha: Any) -> Floats:
