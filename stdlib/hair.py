@@ -8,7 +8,7 @@ S. Marschner and others, 2003, and E. d'Eon and others, 2011; PBRT 4ed. 9.9.
 """
 
 import optixc as ox
-from optixc import FixedArray, float2, float3, float4
+from optixc import float2, float3, float4
 from optixc.stdlib.bsdf import BsdfSample
 from optixc.stdlib.fresnel import fresnel_dielectric
 from optixc.stdlib.math import PI, safe_sqrt
@@ -31,13 +31,17 @@ class Hair:
 
 @ox.struct
 class HairModes:
-    """What the modes share for one `wo` and `h`: attenuations, longitudinal variances, tilted angles of wo, azimuths of their peaks."""
+    """What the modes have for one `wo` and `h`: how much of the light each carries, and by mode longitudinal variances, tilted angles of
+    wo, azimuths of their peaks; `width` is that of all azimuthal peaks."""
 
-    attenuation: FixedArray[float3, 4]
-    variance: FixedArray[float, 4]
-    sine: FixedArray[float, 4]
-    cosine: FixedArray[float, 4]
-    azimuth: FixedArray[float, 4]
+    reflected: float3
+    passed: float3
+    returned: float3
+    rest: float3
+    variance: float4
+    sine: float4
+    cosine: float4
+    azimuth: float4
     width: float
 
 
@@ -119,9 +123,6 @@ def azimuthal_sample(u: float, width: float) -> float:
 @ox.device
 def hair_modes(hair: Hair, h: float, wo: float3) -> HairModes:
     """Everything that does not depend on `wi`."""
-    modes = HairModes(
-        FixedArray[float3, 4](), FixedArray[float, 4](), FixedArray[float, 4](), FixedArray[float, 4](), FixedArray[float, 4](), 0.0
-    )
     sine_o = wo.x
     cosine_o = safe_sqrt(1.0 - sine_o * sine_o)
 
@@ -138,35 +139,27 @@ def hair_modes(hair: Hair, h: float, wo: float3) -> HairModes:
 
     # Attenuation: reflected outside, through, reflected once inside, and all that follow
     f = fresnel_dielectric(ox.min(cosine_o * safe_sqrt(1.0 - h * h), 1.0), eta)
-    modes.attenuation[0] = float3(f)
-    modes.attenuation[1] = (1.0 - f) * (1.0 - f) * through
-    modes.attenuation[2] = modes.attenuation[1] * through * f
-    modes.attenuation[3] = modes.attenuation[2] * f * through / (float3(1.0) - f * through)
+    passed = (1.0 - f) * (1.0 - f) * through
+    returned = passed * through * f
+    rest = returned * f * through / (float3(1.0) - f * through)
 
     # Roughness as variances; scales tilt the first three modes. Chiang and others, equations 7 and 8
     m, n = hair.longitudinal_roughness, hair.azimuthal_roughness
     root = 0.726 * m + 0.812 * m * m + 3.7 * ox.pow(m, 20.0)
-    modes.variance[0] = root * root
-    modes.variance[1] = 0.25 * root * root
-    modes.variance[2] = 4.0 * root * root
-    modes.variance[3] = 4.0 * root * root
-    modes.width = SQRT_PI_OVER_8 * (0.265 * n + 1.194 * n * n + 5.372 * ox.pow(n, 22.0))
-    tilts = float4(-2.0 * hair.scale_tilt, hair.scale_tilt, 4.0 * hair.scale_tilt, 0.0)
-    for p in range(MODES):
-        tilt = tilts[p]
-        modes.sine[p] = sine_o * ox.cos(tilt) + cosine_o * ox.sin(tilt)
-        modes.cosine[p] = abs(cosine_o * ox.cos(tilt) - sine_o * ox.sin(tilt))
-        modes.azimuth[p] = 2.0 * float(p) * gamma_t - 2.0 * gamma_o + float(p) * PI
-    return modes
+    variance = root * root * float4(1.0, 0.25, 4.0, 4.0)
+    width = SQRT_PI_OVER_8 * (0.265 * n + 1.194 * n * n + 5.372 * ox.pow(n, 22.0))
+    tilt = hair.scale_tilt * float4(-2.0, 1.0, 4.0, 0.0)
+    sine = sine_o * ox.cos(tilt) + cosine_o * ox.sin(tilt)
+    cosine = abs(cosine_o * ox.cos(tilt) - sine_o * ox.sin(tilt))
+    azimuth = float4(0.0, 1.0, 2.0, 3.0) * (2.0 * gamma_t + PI) - float4(2.0 * gamma_o)
+    return HairModes(float3(f), passed, returned, rest, variance, sine, cosine, azimuth, width)
 
 
 @ox.device
 def hair_shares(modes: HairModes) -> float4:
     """How often each mode is drawn: in proportion to its mean attenuation."""
-    shares = float4(0.0)
-    for p in range(MODES):
-        a = modes.attenuation[p]
-        shares[p] = a.x + a.y + a.z
+    one = float3(1.0)
+    shares = float4(ox.dot(one, modes.reflected), ox.dot(one, modes.passed), ox.dot(one, modes.returned), ox.dot(one, modes.rest))
     return shares / (shares.x + shares.y + shares.z + shares.w)
 
 
@@ -176,14 +169,12 @@ def hair_value(modes: HairModes, wo: float3, wi: float3) -> float4:
     cosine_i = safe_sqrt(1.0 - wi.x * wi.x)
     phi = ox.atan2(wi.z, wi.y) - ox.atan2(wo.z, wo.y)
     shares = hair_shares(modes)
-    value = float3(0.0)
-    density = 0.0
+    density = float4(0.0)
     for p in range(MODES):
         around = azimuthal(phi - modes.azimuth[p], modes.width) if p < MODES - 1 else 0.5 / PI
-        both = longitudinal(wi.x, cosine_i, modes.sine[p], modes.cosine[p], modes.variance[p]) * around
-        value += both * modes.attenuation[p]
-        density += both * shares[p]
-    return float4(value, density)
+        density[p] = longitudinal(wi.x, cosine_i, modes.sine[p], modes.cosine[p], modes.variance[p]) * around
+    value = density.x * modes.reflected + density.y * modes.passed + density.z * modes.returned + density.w * modes.rest
+    return float4(value, ox.dot(density, shares))
 
 
 @ox.device
