@@ -64,7 +64,7 @@ WORKLOADS = (
     ),
     Workload(
         "heavy", "the same with heavy shading", "path",
-        ("heavy_scalar",), ("heavy_packet", "heavy_single"),
+        ("heavy_scalar", "heavy_scalar_ng"), ("heavy_packet", "heavy_packet_ng", "heavy_single"),
         MESHES, 8,
         _all(MESHES, 1.7), _all(MESHES, 2.0),
     ),

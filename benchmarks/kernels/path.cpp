@@ -240,6 +240,8 @@ extern "C" __attribute__((visibility("default"))) void path_shadow(BenchJob* job
 extern "C" __attribute__((visibility("default"))) void path_single(BenchJob* job) { bench::packet<Surface::MATTE, NormalFrom::VERTICES, Form::SINGLE, Form::PACKET>(*job); }
 extern "C" __attribute__((visibility("default"))) void path_adaptive(BenchJob* job) { bench::packet<Surface::MATTE, NormalFrom::VERTICES, Form::ADAPTIVE, Form::ADAPTIVE>(*job); }
 extern "C" __attribute__((visibility("default"))) void heavy_scalar(BenchJob* job) { bench::scalar<Surface::PRINCIPLED, NormalFrom::VERTICES>(*job); }
+extern "C" __attribute__((visibility("default"))) void heavy_scalar_ng(BenchJob* job) { bench::scalar<Surface::PRINCIPLED, NormalFrom::HIT>(*job); }
+extern "C" __attribute__((visibility("default"))) void heavy_packet_ng(BenchJob* job) { bench::packet<Surface::PRINCIPLED, NormalFrom::HIT, Form::PACKET, Form::PACKET>(*job); }
 extern "C" __attribute__((visibility("default"))) void heavy_packet(BenchJob* job) { bench::packet<Surface::PRINCIPLED, NormalFrom::VERTICES, Form::PACKET, Form::PACKET>(*job); }
 extern "C" __attribute__((visibility("default"))) void heavy_single(BenchJob* job) { bench::packet<Surface::PRINCIPLED, NormalFrom::VERTICES, Form::SINGLE, Form::PACKET>(*job); }
 

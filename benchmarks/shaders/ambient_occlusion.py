@@ -68,8 +68,7 @@ def __raygen__ambient_occlusion():
 
 @ox.program
 def __closesthit__surface(surface: Surface):
-    p0, p1, p2 = ox.get_triangle_vertex_data()
-    surface.n = ox.normalize(ox.cross(p1 - p0, p2 - p0))
+    surface.n = ox.normalize(ox.get_geometric_normal())
     surface.t = ox.get_ray_tmax()
 
 

@@ -68,8 +68,7 @@ def __closesthit__leaf(color: Color, leaves: Leaves):
     rgba = texel(leaves)
     albedo = float3(float(rgba.x), float(rgba.y), float(rgba.z)) * (1.0 / 255.0)
     direction = ox.get_world_ray_direction()
-    p0, p1, p2 = ox.get_triangle_vertex_data()
-    n = facing(ox.normalize(ox.cross(p1 - p0, p2 - p0)), direction)
+    n = facing(ox.normalize(ox.get_geometric_normal()), direction)
     cosine = ox.dot(n, params.sun)
     visibility = Visibility(0.0)
     if cosine > 0.0:

@@ -135,8 +135,7 @@ def light_point(random: Random) -> float3:
 @ox.device
 def geometric_normal(direction: float3) -> float3:
     """The unit normal of the triangle that was hit, on the side of the ray."""
-    p0, p1, p2 = ox.get_triangle_vertex_data()
-    return facing(ox.normalize(ox.cross(p1 - p0, p2 - p0)), direction)
+    return facing(ox.normalize(ox.get_geometric_normal()), direction)
 
 
 @ox.program

@@ -366,6 +366,9 @@ def get_object_to_world_transform_matrix() -> float3x4:
 def get_world_to_object_transform_matrix() -> float3x4:
     """World to object at the ray's time."""
 
+def get_geometric_normal() -> float3:
+    """Not in OptiX: the normal in object space as the traversal found it, at no cost. Not of unit length; of triangles (p1 - p0) x (p2 - p0) but for rounding, of spheres and curves outward, of custom primitives 0."""
+
 @overload
 def get_triangle_vertex_data() -> tuple[float3, float3, float3]: ...
 @overload

@@ -65,10 +65,8 @@ def _check_payload_types(c: Context, node: ast.Call, bound: list[ast.expr | None
 
 def require_row(c: Context, row: Intrinsic, name: str, node: ast.AST) -> None:
     """Note which programs may call this row; maths needs nothing of a program."""
-    if row.optix:
+    if row.optix or row.allowed != ALL_PROGRAMS:
         c.require(f"{name}()", row.allowed, node)
-    else:
-        assert row.allowed == ALL_PROGRAMS
 
 
 def _choose_row(node: ast.Call, name: str) -> Intrinsic:

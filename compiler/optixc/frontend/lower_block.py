@@ -11,6 +11,7 @@ from optixc.frontend.checked import ExprInfo, FunctionInstance
 from optixc.frontend.weak import ConstantValue
 from optixc.ir import types as t
 from optixc.ir.intrinsic_rows import INTRINSICS
+from optixc.ir.intrinsics import State
 from optixc.ir.nodes import (
     Assign,
     Binary,
@@ -145,7 +146,7 @@ def is_stable(expression: Expr) -> bool:
         case Construct(arguments=arguments):
             return all(is_stable(argument) for argument in arguments)
         case IntrinsicCall(name=name, arguments=arguments):
-            return not INTRINSICS[name].optix and name != "tex2d" and all(is_stable(argument) for argument in arguments)
+            return not INTRINSICS[name].optix and INTRINSICS[name].state is State.NONE and all(is_stable(argument) for argument in arguments)
     return False
 
 

@@ -72,6 +72,20 @@ _SURFACE: tuple[Intrinsic, ...] = tuple(
     )
 )
 
+_BEYOND_OPTIX: tuple[Intrinsic, ...] = (
+    Intrinsic(
+        "get_geometric_normal",
+        "",
+        (),
+        t.FLOAT3,
+        "oxrt::getGeometricNormal",
+        "Not in OptiX: the normal in object space as the traversal found it, at no cost. Not of unit length; of triangles "
+        "(p1 - p0) x (p2 - p0) but for rounding, of spheres and curves outward, of custom primitives 0.",
+        state=State.RAY,
+        allowed=SHADED_PROGRAMS,
+    ),
+)
+
 _WITH_ARGUMENTS: tuple[Intrinsic, ...] = (
     device("optixGetTransformListHandle", (("index", t.UINT32),), t.TRAVERSABLE, "Transform `index`, 0 outermost.", allowed=HIT_PROGRAMS),
     *(
@@ -155,4 +169,4 @@ _TRANSFORMS: tuple[Intrinsic, ...] = (
     ),
 )
 
-ROWS: tuple[Intrinsic, ...] = (*_SURFACE, *_vertex_rows(), *_WITH_ARGUMENTS, *_HANDLES, *_INSTANCES, *_TRANSFORMS)
+ROWS: tuple[Intrinsic, ...] = (*_SURFACE, *_BEYOND_OPTIX, *_vertex_rows(), *_WITH_ARGUMENTS, *_HANDLES, *_INSTANCES, *_TRANSFORMS)

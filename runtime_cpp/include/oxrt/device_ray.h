@@ -270,6 +270,9 @@ OXRT_INLINE float2 getTriangleBarycentrics(const Ray& ray) { return {ray.u, ray.
 OXRT_INLINE float getCurveParameter(const Ray& ray) { return ray.u; }
 OXRT_INLINE float2 getRibbonParameters(const Ray& ray) { return {ray.u, ray.v}; }
 
+/* Object space; rounding apart (p1 - p0) x (p2 - p0) of triangles. */
+OXRT_INLINE float3 getGeometricNormal(const Ray& ray) { return isCustomGeometry(ray) ? float3(0.0f) : ray.normal; }
+
 OXRT_INLINE float3 vertexOf(const OxrtGeometry& geometry, uint32_t index) {
     const float* v = geometry.vertices + 3 * uint64_t(index);
     return {v[0], v[1], v[2]};

@@ -26,10 +26,9 @@ template <int W> struct CandidateLanes : RayLanes<W> {
     Ray common;
     uint32_t embreeGeometry;
     bool runsAnyHit;
-    bool isCoherent;      /* then Embree tests no boxes for single lanes */
+    bool isCoherent;
     bool hasCommonRecord; /* SBT offset and stride are the same in all lanes: */
     uint32_t commonOffset, commonStride;
-    Vector<Lanes<float, W>, 3> inverseDirection; /* of the world's rays, if they are coherent */
 
     OXRT_INLINE explicit CandidateLanes(PacketParts<W> rays) : RayLanes<W>(rays) {}
 };

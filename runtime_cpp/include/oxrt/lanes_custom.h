@@ -84,10 +84,9 @@ OXRT_INLINE void runIntersections(CandidateLanes<W>& ray, Lanes<bool, W> mask, u
         ray.closest = select(nearer, tfar, ray.closest);
         ray.closestInEmbree = select(nearer, tfar, ray.closestInEmbree);
     }
-    const bool isLone = structure.geometryCount == 1 && geometry.primitiveCount == 1;
-    if ((ray.isCoherent || isLone) && geometry.keyCount == 1) {
-        const bool isWorld = ray.isCoherent && !common.instance;
-        const Wide<float3, W> inverse = isWorld ? ray.inverseDirection : inverseOf(getObjectRayDirection(ray));
+    // Embree tests no box where a structure holds one primitive
+    if (structure.geometryCount == 1 && geometry.primitiveCount == 1 && geometry.keyCount == 1) {
+        const Wide<float3, W> inverse = inverseOf(getObjectRayDirection(ray));
         mask = mask & meetingBox<W>(getObjectRayOrigin(ray), inverse, geometry.vertices + 6 * uint64_t(primitive), ray.tmin, ray.closest);
         if (none(mask))
             return;

@@ -1,7 +1,7 @@
 /* Embree's queries for packets, and which of them a trace takes.
  *
- * Rays go to Embree as packets, COHERENT where they start near each other in about one direction, with any-hit and intersection programs
- * over lanes as callbacks. Divergent rays with any-hit programs on triangles are traced one by one with the scalar programs: candidates
+ * Rays that start near each other in about one direction go to Embree as COHERENT packets, others one by one, which is quicker than a
+ * packet (measured: README); with any-hit and intersection programs over lanes as callbacks they are packets too. Divergent rays with any-hit programs on triangles are traced one by one with the scalar programs: candidates
  * come in another order for each lane, and packets with rejecting filters are slower (measured: README).
  */
 #ifndef OXRT_LANES_QUERY_H
@@ -14,21 +14,27 @@ inline namespace OXRT_ISA {
 
 /* ---- packets ------------------------------------------------------------------------------------------------------------------ */
 
-/* Whether to trace the active rays together: at least half the lanes, all directions within 60 degrees of the first ray's, all origins
-   within a quarter of its length. Measured on ambient occlusion, in strata (a quarter faster) and without (no slower), and on path tracing
-   (no slower); the angle alone or the origins alone make some of them slower by half. */
-template <int W>
-OXRT_INLINE bool areCoherent(Lanes<bool, W> mask, const Wide<float3, W>& origin, const Wide<float3, W>& direction, Lanes<float, W> tmax) {
+/* How the active rays lie to each other: in about one direction from origins near each other, only the latter, or neither. */
+enum class Bundle { Coherent, Near, Apart };
+
+/* At least half the lanes, all origins within half the length of the first ray, all directions within 60 degrees of it. Rays that end at
+   any hit visit less; theirs may be 80 degrees apart. Measured on ambient occlusion, in strata and without, and on path tracing, whose
+   rays after the first bounce are quickest alone; the angle without the origins, or these without the angle, make some slower by half. */
+template <bool ANY, int W>
+OXRT_INLINE Bundle bundleOf(Lanes<bool, W> mask, const Wide<float3, W>& origin, const Wide<float3, W>& direction, Lanes<float, W> tmax) {
     if (__builtin_popcount(mask.bits()) < W / 2)
-        return false;
+        return Bundle::Apart;
     const int lane = firstLane(mask);
     const Wide<float3, W> apart = origin - spreadLane(origin, lane);
     const Wide<float3, W> first = spreadLane(direction, lane);
-    const Lanes<float, W> reach = 0.25f * spreadLane(tmax, lane);
+    const Lanes<float, W> reach = 0.5f * spreadLane(tmax, lane);
     const Lanes<float, W> length2 = dot(first, first);
+    if (any(mask & (dot(apart, apart) > reach * reach * length2)))
+        return Bundle::Apart;
+    constexpr float cosine2 = ANY ? 0.03f : 0.25f;
     const Lanes<float, W> cosine = dot(direction, first);
-    const Lanes<bool, W> isNear = dot(apart, apart) <= reach * reach * length2;
-    return none(mask & !(isNear & (cosine * abs(cosine) > dot(direction, direction) * (0.25f * length2))));
+    const Lanes<bool, W> isAlike = cosine * abs(cosine) > dot(direction, direction) * (cosine2 * length2);
+    return none(without(mask, isAlike)) ? Bundle::Coherent : Bundle::Near;
 }
 
 /* Nothing is hit. Programs compute in lanes without a hit as well. What lay in memory would often be denormal numbers there, and each operation on one
@@ -41,7 +47,7 @@ template <int W> OXRT_INLINE void clearHits(RayLanes<W>& ray) {
 }
 
 /* The masked lanes as one packet without callbacks; the lanes that hit something. */
-template <class Flags, bool ANY, int W> OXRT_INLINE Lanes<bool, W> traversePacket(RayLanes<W>& ray, Lanes<bool, W> mask, bool isCoherent) {
+template <bool ANY, int W> OXRT_INLINE Lanes<bool, W> traversePacket(RayLanes<W>& ray, Lanes<bool, W> mask, bool isCoherent) {
     alignas(4 * W) int valid[W];
     storeLanes<int32_t, W>(valid, select(mask, int32_t(-1), int32_t(0)));
     const OxrtServices& services = *ray.thread->thread->launch->services;
@@ -57,6 +63,49 @@ template <class Flags, bool ANY, int W> OXRT_INLINE Lanes<bool, W> traversePacke
         ray.t = packetLanes<W>(ray.packet.ray.tfar);
         return mask & (packetLanes<W>(ray.packet.hit.geomID) != RTC_INVALID_GEOMETRY_ID);
     }
+}
+
+/* The masked lanes without callbacks one after the other; the lanes that hit something. */
+template <bool ANY, int W> OXRT_INLINE Lanes<bool, W> traverseSingly(RayLanes<W>& ray, Lanes<bool, W> mask) {
+    const OxrtServices& services = *ray.thread->thread->launch->services;
+    auto& rays = ray.packet.ray;
+    auto& hits = ray.packet.hit;
+    uint32_t found = 0;
+    if constexpr (!ANY)
+        clearHits(ray);
+    eachLane(mask, [&](int lane) {
+        RTCRayHit query;
+        EmbreeRow* rows = reinterpret_cast<EmbreeRow*>(&query.ray);
+        rows[0] = EmbreeRow{rays.org_x[lane], rays.org_y[lane], rays.org_z[lane], rays.tnear[lane]};
+        rows[1] = EmbreeRow{rays.dir_x[lane], rays.dir_y[lane], rays.dir_z[lane], rays.time[lane]};
+        query.ray.tfar = rays.tfar[lane];
+        query.ray.mask = rays.mask[lane];
+        query.ray.id = 0;
+        query.ray.flags = 0;
+        if constexpr (ANY) {
+            services.occluded1(ray.root->scene, &query.ray, nullptr);
+            found |= uint32_t(query.ray.tfar < 0.0f) << lane;
+        } else {
+            query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+            query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+            services.intersect1(ray.root->scene, &query, nullptr);
+            if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID)
+                return;
+            found |= 1u << lane;
+            rays.tfar[lane] = query.ray.tfar;
+            hits.Ng_x[lane] = query.hit.Ng_x;
+            hits.Ng_y[lane] = query.hit.Ng_y;
+            hits.Ng_z[lane] = query.hit.Ng_z;
+            hits.u[lane] = query.hit.u;
+            hits.v[lane] = query.hit.v;
+            hits.primID[lane] = query.hit.primID;
+            hits.geomID[lane] = query.hit.geomID;
+            hits.instID[0][lane] = query.hit.instID[0];
+        }
+    });
+    if constexpr (!ANY)
+        ray.t = packetLanes<W>(rays.tfar);
+    return Lanes<bool, W>::ofBits(found);
 }
 
 /* ---- packets with callbacks --------------------------------------------------------------------------------------------------- */
@@ -85,8 +134,6 @@ OXRT_INLINE void beginCandidates(CandidateLanes<W>& candidates, const RayLanes<W
         candidates.sbtStride = ray.sbtStride;
     }
     candidates.isCoherent = isCoherent;
-    if (Programs::Scalar::hasIntersection && isCoherent)
-        candidates.inverseDirection = inverseOf(getWorldRayDirection(ray));
     candidates.closest = ray.tmax;
     candidates.closestInEmbree = packetLanes<W>(ray.packet.ray.tfar);
     candidates.committedKind = NO_REPORT;
@@ -302,8 +349,9 @@ __attribute__((noinline)) FoundLanes<typename Programs::Payload, W> traverseApar
 }
 
 template <class Programs, class Flags, bool ANY, int W>
-OXRT_INLINE Lanes<bool, W> traverse(RayLanes<W>& ray, Lanes<bool, W> mask, typename Programs::Payload& payload, bool isCoherent) {
+OXRT_INLINE Lanes<bool, W> traverse(RayLanes<W>& ray, Lanes<bool, W> mask, typename Programs::Payload& payload, Bundle bundle) {
     using Scalar = typename Programs::Scalar;
+    const bool isCoherent = bundle == Bundle::Coherent;
     bool isApart = ray.paths != nullptr;
     if constexpr (hasCallbacks<Scalar, Flags>) {
         const uint32_t needs = ray.root->needs;
@@ -317,8 +365,10 @@ OXRT_INLINE Lanes<bool, W> traverse(RayLanes<W>& ray, Lanes<bool, W> mask, typen
         if (calls && !isApart)
             return traverseCandidates<Programs, Flags, ANY>(ray, mask, payload, isCoherent);
     }
-    if (!__builtin_expect(isApart, false))
-        return traversePacket<Flags, ANY>(ray, mask, isCoherent);
+    if (!__builtin_expect(isApart, false)) {
+        const bool isPacket = isCoherent || (ANY && bundle == Bundle::Near);
+        return isPacket ? traversePacket<ANY>(ray, mask, isCoherent) : traverseSingly<ANY>(ray, mask);
+    }
     RayLanes<W> copy = ray;
     typename Programs::Payload payloadCopy;
     if constexpr (Programs::callbacksUsePayload)

@@ -364,6 +364,14 @@ template <int W> OXRT_INLINE Wide<float2, W> getTriangleBarycentrics(const RayLa
 }
 template <int W> OXRT_INLINE Lanes<float, W> getCurveParameter(const RayLanes<W>& ray) { return packetLanes<W>(ray.packet.hit.u); }
 
+template <int W> OXRT_INLINE Wide<float3, W> getGeometricNormal(const RayLanes<W>& ray) {
+    const auto& hit = ray.packet.hit;
+    const Wide<float3, W> normal = {packetLanes<W>(hit.Ng_x), packetLanes<W>(hit.Ng_y), packetLanes<W>(hit.Ng_z)};
+    if (!(ray.root->needs & OXRT_SCENE_HAS_CUSTOM))
+        return normal;
+    return select(geometryType(ray) == uint32_t(OXRT_PRIMITIVE_CUSTOM), Wide<float3, W>(float3(0.0f)), normal);
+}
+
 template <int W, class Places> OXRT_INLINE Wide<float3, W> vertexAt(const Places& places, Lanes<bool, W> mask) {
     return {gather<float, W>(places, 0, mask), gather<float, W>(places, 4, mask), gather<float, W>(places, 8, mask)};
 }

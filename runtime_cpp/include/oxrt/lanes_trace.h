@@ -40,16 +40,19 @@ template <class Programs, int W> OXRT_INLINE void runClosestHits(RayLanes<W>& ra
     }
 }
 
+/* Whether a trace ends at any hit and nothing is asked about it. */
+template <class Programs, class Flags> inline constexpr bool endsAnywhere =
+    FlagTraits<Flags>::alwaysTerminates && !(Programs::Scalar::hasClosestHit && FlagTraits<Flags>::mayRunClosestHit);
+
 /* Traversal, then the closest-hit and miss programs of the lanes. */
 template <class Programs, class Flags, int W>
-OXRT_INLINE void traceNow(RayLanes<W>& ray, Lanes<bool, W> mask, typename Programs::Payload& payload, bool isCoherent, Place place) {
+OXRT_INLINE void traceNow(RayLanes<W>& ray, Lanes<bool, W> mask, typename Programs::Payload& payload, Bundle bundle, Place place) {
     using Scalar = typename Programs::Scalar;
-    using Known = FlagTraits<Flags>;
-    constexpr bool runsClosestHit = Scalar::hasClosestHit && Known::mayRunClosestHit;
+    constexpr bool runsClosestHit = Scalar::hasClosestHit && FlagTraits<Flags>::mayRunClosestHit;
     Lanes<bool, W> hit = false;
     const Lanes<bool, W> traced = mask & (ray.tmin <= ray.tmax);
     if (ray.root && ray.root->scene && any(traced)) {
-        hit = traverse<Programs, Flags, Known::alwaysTerminates && !runsClosestHit>(ray, traced, payload, isCoherent);
+        hit = traverse<Programs, Flags, endsAnywhere<Programs, Flags>>(ray, traced, payload, bundle);
         if constexpr (Scalar::mayThrow) {
             mask = without(mask, ray.thread->thrown);
             hit = hit & mask;
@@ -126,8 +129,8 @@ OXRT_INLINE void trace(LanesThread<W>& thread, Lanes<bool, W> mask, uint64_t han
     }
     // coherent packets offer a custom primitive to lanes that miss its box, which costs more than they save
     const bool callsIntersection = Scalar::hasIntersection && ray.root && (ray.root->needs & OXRT_SCENE_HAS_CUSTOM);
-    const bool isCoherent = !callsIntersection && areCoherent(mask, origin, direction, tmax);
-    traceNow<Programs, Flags>(ray, mask, payload, isCoherent, place);
+    const Bundle bundle = callsIntersection ? Bundle::Apart : bundleOf<endsAnywhere<Programs, Flags>>(mask, origin, direction, tmax);
+    traceNow<Programs, Flags>(ray, mask, payload, bundle, place);
     leaveTrace<Scalar>(*thread.thread);
 }
 
