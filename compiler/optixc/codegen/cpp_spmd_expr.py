@@ -44,7 +44,8 @@ _HIT_LANES = frozenset(
     get_ray_tmax get_ray_time get_ray_flags get_ray_visibility_mask
     get_primitive_index get_sbt_gas_index get_instance_id get_instance_index get_gas_traversable_handle get_hit_kind get_primitive_type
     is_front_face_hit is_back_face_hit is_triangle_hit is_triangle_front_face_hit is_triangle_back_face_hit get_triangle_barycentrics
-    get_geometric_normal get_curve_parameter get_cluster_id get_transform_list_size get_object_to_world_transform_matrix get_world_to_object_transform_matrix
+    get_geometric_normal
+    get_curve_parameter get_cluster_id get_transform_list_size get_object_to_world_transform_matrix get_world_to_object_transform_matrix
     get_transform_list_handle get_triangle_vertex_data transform_point_from_world_to_object_space transform_point_from_object_to_world_space
     transform_vector_from_world_to_object_space transform_vector_from_object_to_world_space transform_normal_from_world_to_object_space
     transform_normal_from_object_to_world_space""".split()

@@ -146,7 +146,8 @@ def is_stable(expression: Expr) -> bool:
         case Construct(arguments=arguments):
             return all(is_stable(argument) for argument in arguments)
         case IntrinsicCall(name=name, arguments=arguments):
-            return not INTRINSICS[name].optix and INTRINSICS[name].state is State.NONE and all(is_stable(argument) for argument in arguments)
+            is_free = not INTRINSICS[name].optix and INTRINSICS[name].state is State.NONE
+            return is_free and all(is_stable(argument) for argument in arguments)
     return False
 
 
