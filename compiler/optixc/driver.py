@@ -42,6 +42,7 @@ from optixc.passes.callables import signatures_called
 from optixc.passes.features import Features, features
 from optixc.passes.pipeline import LinkError, link
 from optixc.passes.specialize import parameter_path
+from optixc.passes.written_arrays import written_arrays
 from optixc.signed_json import Json, digest
 from optixc.stack_usage import frames_of_programs
 from optixc.version import __version__
@@ -274,6 +275,7 @@ def _describe(emitted: Emitted, options: CompileOptions, compiler: toolchain.Com
         "compiler": str(compiler),
         "programs": [program.name for program in emitted.pipeline.programs],
         "features": {feature.name: feature.describe() for feature in emitted.features.items},
+        "written": [{"path": one.path, "place": f"{one.span.path}:{one.span.line}"} for one in written_arrays(emitted.pipeline)],
         "functions": [_describe_place(function) for function in (*emitted.pipeline.programs, *emitted.pipeline.helpers)],
         "traces": [str(use) for use in map(_trace_text, uses)],
         "trace_uses": uses,

@@ -16,6 +16,7 @@ from optixc.host.graph_report import graph_forms
 from optixc.host.groups import ProgramGroup, Record, check_layout
 from optixc.host.sbt import ShaderBindingTable
 from optixc.host.stack_sizes import StackSizes, nesting_that_fits
+from optixc.host.written_arrays import WrittenArrays
 
 STEP_MS = 50
 FAULT_BOUND_VALUE = 3
@@ -47,6 +48,7 @@ class PipelineReport:
     trace_uses: tuple[dict[str, Any], ...] = ()
     calls_callables: bool = False
     functions: tuple[dict[str, Any], ...] = ()
+    written: tuple[dict[str, Any], ...] = ()
 
     def __str__(self) -> str:
         source = "from the cache" if self.cache_hit else f"compiled in {self.compile_seconds:.2f} s"
@@ -113,6 +115,7 @@ class Pipeline:
         self._report = PipelineReport(
             lanes=int(info.lanes), params_size=int(info.paramsSize), max_trace_depth=int(info.maxTraceDepth), library=path, **report
         )
+        self._written = WrittenArrays(self._report.written)
         for group in self._groups:
             group.linked_into(self)
 
@@ -136,6 +139,8 @@ class Pipeline:
             self._refuse_dead()
         if type(params) is not self._params_type:
             self._check_params(params)
+        if self._params is not None:
+            self._written.check_params(params)
         if type(sbt) is not ShaderBindingTable:
             raise InvalidValueError(f"sbt takes a ShaderBindingTable, not {type(sbt).__name__}")
 
@@ -203,11 +208,12 @@ class Pipeline:
         library.check(self._lib.oxrtPipelineSetStackTraceDepth(self._pipeline, nesting_that_fits(total, continuation_stack_size)))
 
     def check_record(self, record: Record) -> None:
-        """Raises unless the record's data is what its programs in this pipeline read."""
+        """Raises unless the record's data is what its programs in this pipeline read, and may be written where they write."""
         for program in record.group.programs.values():
             linked = self.programs.get(program.name)
             if linked is not None:
                 check_layout(program.name, linked["record"], linked["record_name"], record.data)
+        self._written.check_record([program.name for program in record.group.programs.values()], record.data)
 
     def pack_header(self, group: ProgramGroup, data_size: int) -> bytes:
         """The 32 bytes before the data of a record that runs `group` in this pipeline."""
