@@ -1,23 +1,35 @@
 // Ribbons: a line of half-width r(u) swept along a quadratic B-spline, met from both sides. The direction across is blended between unit
 // vectors at the borders of segments: across the tangent and the caller's normal, or where there are no normals across the plane in which
-// the curve bends. The point of the axis in front of the ray along that direction is a root of a cubic in u.
+// the curve bends. The point of the axis in front of the ray along that direction is a root of a polynomial in u, of degree 5 at most.
 #include "curve_points.h"
 
 #include "embree_library.h"
+#include "polynomial.h"
 
-#include <array>
 #include <cmath>
 
 namespace oxrt {
 
 namespace {
 
-constexpr int rootSteps = 40;
 constexpr float inPlane = 1e-6f; // the ray meets the ribbon edge on
 
 Point4 pointOf(const float* xyz)
 {
     return {xyz[0], xyz[1], xyz[2], 0};
+}
+
+void storePoint(float* xyz, const Point4& p)
+{
+    xyz[0] = p.x;
+    xyz[1] = p.y;
+    xyz[2] = p.z;
+}
+
+// The part of `a` across the unit vector `direction`.
+Point4 rejected(const Point4& a, const Point4& direction)
+{
+    return a - direction * dot3(a, direction);
 }
 
 // A direction across `tangent` where nothing else says one.
@@ -37,81 +49,58 @@ Point4 acrossBend(const Point4* p)
     return dot3(across, across) > straight * straight * dot3(a, a) * dot3(b, b) ? normalize3(across) : Point4{};
 }
 
-// A polynomial of degree 3 from its values' terms.
-struct Polynomial {
-    std::array<double, 4> terms;
-    double at(double u) const { return terms[0] + (terms[1] + (terms[2] + terms[3] * u) * u) * u; }
-};
-
-// The roots of `f` in [0, 1], ascending: it is monotone between the roots of its derivative.
-int rootsIn01(const Polynomial& f, double (&roots)[3])
-{
-    const double a = 3 * f.terms[3], b = f.terms[2], c = f.terms[1];
-    double borders[4] = {0, 1, 1, 1};
-    int count = 1;
-    const double discriminant = b * b - a * c;
-    if (discriminant > 0) {
-        const double q = -(b + (b < 0 ? -std::sqrt(discriminant) : std::sqrt(discriminant)));
-        double extremes[2] = {a != 0 ? q / a : -1, q != 0 ? c / q : -1};
-        if (extremes[0] > extremes[1]) std::swap(extremes[0], extremes[1]);
-        for (const double u : extremes)
-            if (u > 0 && u < 1) borders[count++] = u;
-    }
-    borders[count] = 1;
-    int found = 0;
-    for (int i = 0; i < count; ++i) {
-        double low = borders[i], high = borders[i + 1];
-        const double atLow = f.at(low), atHigh = f.at(high);
-        if (atLow == 0 && (found == 0 || roots[found - 1] != low)) roots[found++] = low;
-        if (!((atLow < 0 && atHigh > 0) || (atLow > 0 && atHigh < 0))) {
-            if (atHigh == 0 && i + 1 == count && found < 3) roots[found++] = high;
-            continue;
-        }
-        for (int step = 0; step < rootSteps; ++step) {
-            const double middle = 0.5 * (low + high);
-            ((f.at(middle) < 0) == (atLow < 0) ? low : high) = middle;
-        }
-        roots[found++] = 0.5 * (low + high);
-    }
-    return found;
-}
-
+// The direction across along one segment. Each border adds to its own direction a part of the way along the axis, so that the surface
+// turns into that of the segment before it without a crease.
 struct Across {
     Point4 begin, end;
-    Point4 at(float u) const { return begin * (1 - u) + end * u; }
+    float beginLean, endLean;
+
+    // As a polynomial in u above the axis, which is of degree 2.
+    Cubic above(const Cubic& axis) const
+    {
+        return {begin, end - begin + axis.b * (beginLean + endLean) + axis.c * endLean,
+                (axis.c - axis.b) * beginLean - axis.b * endLean, axis.c * (-beginLean - endLean)};
+    }
 };
+
+constexpr std::size_t widthFloats = 8; // of one segment and key, in the order of Across
+
+Across readAcross(const float* width)
+{
+    return {pointOf(width), pointOf(width + 3), width[6], width[7]};
+}
 
 Across acrossAt(const OxrtGeometry& view, std::uint32_t primitive, const KeyPosition& position)
 {
-    const std::size_t perKey = 6 * std::size_t(view.primitiveCount);
-    const float* key = view.widths + perKey * position.key + 6 * std::size_t(primitive);
-    const Across first = {pointOf(key), pointOf(key + 3)};
-    if (position.fraction == 0) return first;
-    const Across second = {pointOf(key + perKey), pointOf(key + perKey + 3)};
-    return {first.begin * (1 - position.fraction) + second.begin * position.fraction,
-            first.end * (1 - position.fraction) + second.end * position.fraction};
+    const std::size_t perKey = widthFloats * view.primitiveCount;
+    const float* key = view.widths + perKey * position.key + widthFloats * primitive;
+    if (position.fraction == 0) return readAcross(key);
+    float between[widthFloats];
+    for (std::size_t i = 0; i < widthFloats; ++i) between[i] = key[i] * (1 - position.fraction) + key[perKey + i] * position.fraction;
+    return readAcross(between);
 }
 
 // Where axis and direction across lie in one plane with the ray: cross(axis - origin, across) . direction = 0.
-Polynomial planeCondition(const Cubic& axis, const Across& across, const LaneRay& ray)
+Polynomial planeCondition(const Cubic& axis, const Cubic& across, const LaneRay& ray)
 {
-    const Point4 slope = across.end - across.begin;
-    const Point4 start = axis.a - ray.origin;
-    const auto term = [&](const Point4& p, const Point4& q) { return static_cast<double>(dot3(cross3(p, q), ray.direction)); };
-    return {{term(start, across.begin), term(start, slope) + term(axis.b, across.begin), term(axis.b, slope) + term(axis.c, across.begin),
-             term(axis.c, slope)}};
+    const Point4 from[3] = {axis.a - ray.origin, axis.b, axis.c};
+    const Point4 wide[4] = {across.a, across.b, across.c, across.d};
+    Polynomial condition;
+    for (int i = 0; i < 3; ++i)
+        for (int j = 0; j < 4; ++j) condition.terms[i + j] += static_cast<double>(dot3(cross3(from[i], wide[j]), ray.direction));
+    return condition;
 }
 
 void intersectRibbon(const OxrtGeometry& view, unsigned geometry, unsigned primitive, LaneHits& hits)
 {
     const KeyPosition position = keyPosition(view.keyCount, hits.ray.time);
     const Cubic axis = segmentAt(view, primitive, position);
-    const Across across = acrossAt(view, primitive, position);
-    double roots[3];
+    const Cubic across = acrossAt(view, primitive, position).above(axis);
+    double roots[Polynomial::mostRoots];
     const int count = rootsIn01(planeCondition(axis, across, hits.ray), roots);
     const Point4& direction = hits.ray.direction;
     const float lengthSquared = dot3(direction, direction);
-    LaneHit found[3];
+    LaneHit found[Polynomial::mostRoots];
     int foundCount = 0;
     for (int i = 0; i < count; ++i) {
         const float u = static_cast<float>(roots[i]);
@@ -145,7 +134,7 @@ void ribbonBounds(const RTCBoundsFunctionArguments* arguments)
 
 class Ribbons final : public Shape {
 public:
-    explicit Ribbons(const OxrtBuildInput& input) : curves(input), widths(6 * std::size_t(curves.segmentCount) * curves.keyCount)
+    explicit Ribbons(const OxrtBuildInput& input) : curves(input), widths(widthFloats * curves.segmentCount * curves.keyCount)
     {
         computeWidths(input);
     }
@@ -181,12 +170,17 @@ private:
             for (std::uint32_t i = 0; i < curves.segmentCount; ++i)
                 for (std::uint32_t end = 0; end < 2; ++end) {
                     const Point4 across = input.normals ? acrossNormal(input.normals[key], key, i, end) : acrossCurve(key, i, end);
-                    float* target = widths.data() + 6 * (std::size_t(curves.segmentCount) * key + i) + 3 * end;
-                    target[0] = across.x;
-                    target[1] = across.y;
-                    target[2] = across.z;
+                    storePoint(widthOf(key, i) + 3 * end, across);
                 }
-        for (std::uint32_t key = 0; key < curves.keyCount; ++key) alignSides(key);
+        for (std::uint32_t key = 0; key < curves.keyCount; ++key) {
+            alignSides(key);
+            leanAcross(key);
+        }
+    }
+
+    float* widthOf(std::uint32_t key, std::uint32_t segment)
+    {
+        return widths.data() + widthFloats * (std::size_t(curves.segmentCount) * key + segment);
     }
 
     const Point4* pointsOf(std::uint32_t key, std::uint32_t segment) const
@@ -215,18 +209,60 @@ private:
         return dot3(mean, mean) > 0 ? normalize3(mean) : anyAcross(own[end + 1] - own[end]);
     }
 
-    // The sides must not swap along a strand: each direction is turned to the one before it.
+    // The sides must not swap along a strand; a border at right angles to the one before it counts as swapped, as OptiX has it.
     void alignSides(std::uint32_t key)
     {
-        float* width = widths.data() + 6 * std::size_t(curves.segmentCount) * key;
-        for (std::uint32_t i = 0; i < curves.segmentCount; ++i)
-            for (std::uint32_t end = 0; end < 2; ++end) {
-                if (end == 0 && !curves.continues(i)) continue;
-                float* own = width + 6 * i + 3 * end;
-                const float* before = own - 3;
-                if (dot3(pointOf(own), pointOf(before)) < 0)
-                    for (int axis = 0; axis < 3; ++axis) own[axis] = -own[axis];
+        float sign = 1;
+        Point4 before;
+        for (std::uint32_t i = 0; i < curves.segmentCount; ++i) {
+            float* width = widthOf(key, i);
+            if (!curves.continues(i)) {
+                sign = 1;
+                before = pointOf(width);
             }
+            const Point4 own[2] = {before, pointOf(width + 3)}; // the border that two segments share is the first one's
+            storePoint(width, own[0] * sign);
+            if (!(dot3(own[0], own[1]) > 0)) sign = -sign;
+            storePoint(width + 3, own[1] * sign);
+            before = own[1];
+        }
+    }
+
+    // Where the ribbon turns about its axis, the surface normals at a border would not be those of the segment before: the direction across
+    // gets the same derivative on both sides. (The rule follows hits on ribbons of a real OptiX.)
+    void leanAcross(std::uint32_t key)
+    {
+        Point4 before;
+        for (std::uint32_t i = 0; i < curves.segmentCount; ++i) {
+            float* width = widthOf(key, i);
+            Across across = readAcross(width);
+            across.beginLean = across.endLean = 0;
+            const Cubic axis = cubicOf(Basis::QuadraticBSpline, pointsOf(key, i));
+            if (curves.continues(i)) leanAfter(before, axis, across);
+            width[6] = across.beginLean;
+            width[7] = across.endLean;
+            const Cubic above = across.above(axis);
+            before = rejected(above.slope(1), across.end);
+        }
+    }
+
+    // `before`: the derivative of the direction across where the segment before ends.
+    static void leanAfter(const Point4& before, const Cubic& axis, Across& across)
+    {
+        const Point4 tangent = axis.slope(0);
+        const Point4 missing = before - rejected(across.end - across.begin, across.begin);
+        const Point4 side = cross3(tangent, across.begin);
+        constexpr float noTurn = 1e-5f;
+        if (std::fabs(dot3(before, side)) + std::fabs(dot3(before - missing, side)) < noTurn * std::sqrt(dot3(side, side))) return;
+        // missing = endLean * slope in the middle + beginLean * tangent, across `begin`
+        const Point4 middle = rejected(axis.slope(0.5f), across.begin);
+        const Point4 first = rejected(tangent, across.begin);
+        const Point4 area = cross3(middle, first);
+        const float squared = dot3(area, area);
+        constexpr float parallel = 1e-4f;
+        if (!(squared > parallel * parallel * dot3(middle, middle) * dot3(first, first))) return;
+        across.endLean = dot3(cross3(missing, first), area) / squared;
+        across.beginLean = dot3(cross3(middle, missing), area) / squared;
     }
 
     CurvePoints curves;

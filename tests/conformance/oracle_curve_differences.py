@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 import brute_force_curves
+import numpy as np
 from brute_force_curves import LINEAR, RIBBON, ROCAPS, Segment
 from oracle_files import Probe
 
@@ -14,7 +15,7 @@ TOO_THICK = "strands thicker than their bends"
 GRAZING = "grazing rays"
 ROCAPS_CAP = "flat ends of rocaps"
 CONE_END = "parameter at the end of a cone"
-ORIENTATION = "orientation of ribbons"
+ORIENTATION = "orientation of ribbons without normals"
 SECOND_CROSSING = "second crossing of a segment"
 INTERNAL = "surfaces inside of linear strands"
 ROCAPS_ACCURACY = "accuracy of rocaps"
@@ -29,7 +30,7 @@ REASONS = {
     GRAZING: "the ray touches a sphere within rounding",
     ROCAPS_CAP: "the recorded flat ends of rocaps lie off the plane through the end of the axis; here they lie in it",
     CONE_END: "near the wide end of a cone the recorded parameter is 1 before the end is reached",
-    ORIENTATION: "how ribbons are turned along bent strands is not documented; here the direction across is blended between the borders",
+    ORIENTATION: "how ribbons without normals are turned along bent strands is not documented; here they lie across the bends",
     INTERNAL: "segments of linear strands are met from inside of their neighbours there (notes of group 11); here joints are one surface",
     ROCAPS_ACCURACY: "the recorded hits lie off the swept spheres by up to 5e-4, which bent and grazed strands turn into "
     "more along the ray",
@@ -37,6 +38,8 @@ REASONS = {
 }
 # A parameter this near to 0 or 1 is at the end of a segment.
 AT_END = 3e-7
+# In radii: the recorded ends are tilted by a few degrees; a grazing ray turns 1e-3 across the tube into more along the ray.
+CAP_SPREAD, TUBE_SPREAD = 0.1, 0.05
 CURVE_TYPES = frozenset(brute_force_curves.BASES)
 
 
@@ -44,22 +47,36 @@ def curve_difference(probe: Probe, given: dict[str, Any], ours: list[dict[str, A
     """The difference that leaves a ray's hits open, None if there is none or no curve was hit."""
     hits = [event for event in ours + theirs if event["ev"] in ("AH", "CH")]
     met = [(event, segment) for event in hits for segment in brute_force_curves.segments(probe.scene, given, event["prim"])]
+    if met and all(segment.curve_type in ROCAPS for _, segment in met) and _same_primitives(ours, theirs) and (name := _of_rocaps(
+        probe, given, hits, met[0][1])):
+        return name
     for event, segment in met:
         if name := _of_hit(event, segment):
             return name
         if segment.curve_type == LINEAR and brute_force_curves.is_inside(probe.scene, given, event):
             return INTERNAL
-    ends = {event["tmax"] for event in hits if event.get("u") in (0.0, 1.0)}
-    if ends and any(segment.curve_type in ROCAPS for _, segment in met) and _has_caps(probe):
-        return ROCAPS_CAP
-    if (
-        met
-        and all(segment.curve_type in ROCAPS for _, segment in met)
-        and _same_primitives(ours, theirs)
-        and all(brute_force_curves.is_on_curve(probe.scene, given, event) for event in hits)
-    ):
-        return ROCAPS_ACCURACY
     return None
+
+
+def _of_rocaps(probe: Probe, given: dict[str, Any], hits: list[dict[str, Any]], segment: Segment) -> str | None:
+    """The same segments were hit, a little elsewhere: on a flat end, or on the tube."""
+    ends = [float(event["u"]) for event in hits if event["u"] in (0.0, 1.0)]
+    if ends:
+        axis = segment.slope(ends[0])[:3]
+        lean = abs(float(axis @ segment.direction)) / float(np.linalg.norm(axis) * np.linalg.norm(segment.direction))
+        return ROCAPS_CAP if _has_caps(probe) and lean * _spread(hits, segment) < CAP_SPREAD else None
+    on_tube = all(brute_force_curves.is_on_curve(probe.scene, given, event) for event in hits)
+    return ROCAPS_ACCURACY if on_tube and _spread(hits, segment) < TUBE_SPREAD else None
+
+
+def _spread(hits: list[dict[str, Any]], segment: Segment) -> float:
+    """How far the hits on each primitive lie from each other, in radii."""
+    length = float(np.linalg.norm(segment.direction))
+    radius = max(float(segment.at(u)[3]) for u in (0.0, 0.5, 1.0))
+    places: dict[int, list[float]] = {}
+    for event in hits:
+        places.setdefault(event["prim"], []).append(float(event["tmax"]))
+    return max(max(t) - min(t) for t in places.values()) * length / radius
 
 
 def _same_primitives(ours: list[dict[str, Any]], theirs: list[dict[str, Any]]) -> bool:
@@ -72,7 +89,7 @@ def _same_primitives(ours: list[dict[str, Any]], theirs: list[dict[str, Any]]) -
 def _of_hit(event: dict[str, Any], segment: Segment) -> str | None:
     u = float(event["u"])
     if segment.curve_type == RIBBON:
-        return None if segment.is_straight() else ORIENTATION
+        return None if segment.is_straight() or segment.has_normals else ORIENTATION
     if segment.curve_type == LINEAR:
         return PARALLEL if segment.is_parallel() else GRAZING if brute_force_curves.grazes(segment) else None
     if segment.is_parallel():

@@ -109,9 +109,12 @@ def compare(probe: Probe, index: int, result: RayResult, known: Known) -> tuple[
     strict = _strict(probe, events, recorded, given)
     if not strict and result.payload == recorded["p"] and (not trimmed or result.event_count == recorded["nev"]):
         return set(), []
-    if name := _exempt(probe, given) or curve_difference(probe, given, events, recorded["events"]):
+    if name := _exempt(probe, given):
         return {name}, []
-    return _explain(probe, given, events, recorded["events"], known, strict)
+    names, unexplained = _explain(probe, given, events, recorded["events"], known, strict)
+    if unexplained and (name := curve_difference(probe, given, events, recorded["events"])):
+        return {name}, []
+    return names, unexplained
 
 
 def _exempt(probe: Probe, given: dict[str, Any]) -> str | None:

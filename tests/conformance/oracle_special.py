@@ -12,6 +12,7 @@ from dataclasses import dataclass
 from harness import Harness
 from oracle_api import NEEDED, check_misuse, check_properties, check_stack_helpers, has_check
 from oracle_callables import check_callables
+from oracle_curve_queries import check_curve_queries, is_curve_query
 from oracle_exceptions import check_exceptions, check_refused_code
 from oracle_files import Probe
 from oracle_hit_objects import USING_TRAVERSE_DATA, check_hit_objects, mode_of
@@ -45,6 +46,8 @@ def check_of(probe: Probe) -> Check | None:
         return Check(("random instance access", "static transforms", "several instance levels"), check_instance_queries)
     if probe.data.get("queries") and is_triangle_query(probe):
         return Check(("random vertex access", *(("vertex motion",) if moves(probe) else ())), check_triangle_queries)
+    if probe.data.get("queries") and is_curve_query(probe):
+        return Check(("random vertex access", "curves"), check_curve_queries)
     if probe.name == "stack_size_helpers":
         return Check((), check_stack_helpers)
     if probe.name == "device_properties":

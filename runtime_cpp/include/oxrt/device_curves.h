@@ -45,16 +45,25 @@ template <int N> OXRT_INLINE typename ControlPoints<N>::Type controlPoints(const
         return makeTuple(point(0), point(1), point(2), point(3));
 }
 
-/* The direction across a ribbon at the borders of a segment. */
-OXRT_INLINE float3 ribbonWidth(const OxrtGeometry& geometry, uint32_t primitive, KeyPlace at, int border) {
-    const uint64_t perKey = 6 * uint64_t(geometry.primitiveCount);
-    const float* w = geometry.widths + perKey * at.key + 6 * uint64_t(primitive) + 3 * border;
-    if (at.fraction == 0.0f)
-        return {w[0], w[1], w[2]};
-    const float* x = w + perKey;
-    const float a = 1.0f - at.fraction;
-    const float b = at.fraction;
-    return {a * w[0] + b * x[0], a * w[1] + b * x[1], a * w[2] + b * x[2]};
+/* One of the 8 numbers that say how a ribbon's segment lies; see OxrtGeometry::widths. */
+OXRT_INLINE float ribbonWidth(const OxrtGeometry& geometry, uint32_t primitive, KeyPlace at, int number) {
+    const uint64_t perKey = 8 * uint64_t(geometry.primitiveCount);
+    const float* w = geometry.widths + perKey * at.key + 8 * uint64_t(primitive) + number;
+    return at.fraction == 0.0f ? w[0] : (1.0f - at.fraction) * w[0] + at.fraction * w[perKey];
+}
+
+/* What of a ribbon's normal is in one axis: the axis' derivative, the direction across, and its derivative. */
+struct RibbonAxis {
+    float slope, across, change;
+};
+OXRT_INLINE RibbonAxis ribbonAxis(float p0, float p1, float p2, float begin, float end, float beginLean, float endLean, float u) {
+    const float a = 1.0f - u;
+    const float slope = a * (p1 - p0) + u * (p2 - p1);
+    const float way = 0.5f * u * (p1 - p0 + slope);        /* from the beginning of the segment */
+    const float left = 0.5f * a * (slope + p2 - p1);       /* to its end */
+    const float first = begin + beginLean * way;
+    const float second = end + endLean * left;
+    return {slope, a * first + u * second, second - first + (a * beginLean - u * endLean) * slope};
 }
 
 /* The normal of the ruled surface axis(u) + v radius(u) across(u) / |across(u)|, not normalised: its derivatives' cross product, in which
@@ -65,20 +74,20 @@ OXRT_INLINE float3 ribbonNormal(const OxrtGeometry& geometry, uint32_t primitive
     const float4 p0 = radiusVertex(geometry, first, at);
     const float4 p1 = radiusVertex(geometry, first + 1, at);
     const float4 p2 = radiusVertex(geometry, first + 2, at);
-    const float3 begin = ribbonWidth(geometry, primitive, at, 0);
-    const float3 end = ribbonWidth(geometry, primitive, at, 1);
+    const auto width = [&](int number) { return ribbonWidth(geometry, primitive, at, number); };
+    const RibbonAxis x = ribbonAxis(p0.x, p1.x, p2.x, width(0), width(3), width(6), width(7), u);
+    const RibbonAxis y = ribbonAxis(p0.y, p1.y, p2.y, width(1), width(4), width(6), width(7), u);
+    const RibbonAxis z = ribbonAxis(p0.z, p1.z, p2.z, width(2), width(5), width(6), width(7), u);
     const float a = 1.0f - u;
     const float radius = 0.5f * (a * a * p0.w + (1.0f + 2.0f * u * a) * p1.w + u * u * p2.w);
-    const float3 slope(a * (p1.x - p0.x) + u * (p2.x - p1.x), a * (p1.y - p0.y) + u * (p2.y - p1.y), a * (p1.z - p0.z) + u * (p2.z - p1.z));
-    const float3 across(a * begin.x + u * end.x, a * begin.y + u * end.y, a * begin.z + u * end.z);
-    const float3 change(end.x - begin.x, end.y - begin.y, end.z - begin.z);
-    const float squared = across.x * across.x + across.y * across.y + across.z * across.z;
+    const float squared = x.across * x.across + y.across * y.across + z.across * z.across;
     const float inverse = squared > 0.0f ? 1.0f / __builtin_sqrtf(squared) : 0.0f;
-    const float along = (across.x * change.x + across.y * change.y + across.z * change.z) * inverse * inverse;
+    const float along = (x.across * x.change + y.across * y.change + z.across * z.change) * inverse * inverse;
     const float scale = parameters.y * radius * inverse;
-    const float3 tangent(slope.x + scale * (change.x - along * across.x), slope.y + scale * (change.y - along * across.y),
-                         slope.z + scale * (change.z - along * across.z));
-    return {tangent.y * across.z - tangent.z * across.y, tangent.z * across.x - tangent.x * across.z, tangent.x * across.y - tangent.y * across.x};
+    const float3 tangent(x.slope + scale * (x.change - along * x.across), y.slope + scale * (y.change - along * y.across),
+                         z.slope + scale * (z.change - along * z.across));
+    return {tangent.y * z.across - tangent.z * y.across, tangent.z * x.across - tangent.x * z.across,
+            tangent.x * y.across - tangent.y * x.across};
 }
 
 /* ---- of the hit ----------------------------------------------------------------------------------------------------------------- */

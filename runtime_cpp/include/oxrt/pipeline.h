@@ -74,8 +74,8 @@ typedef struct OxrtGeometry {
     const uint32_t* indices;       /* triangles: 3 per primitive, never NULL; curves: first control point; else NULL */
     const OxrtMicromapView* opacityMicromaps; /* one per primitive; NULL without */
     const OxrtOwnShape* ownShape;  /* not NULL: Embree's intersection callbacks hand over to it */
-    const float* widths;           /* ribbons: unit vectors across, at the beginning and at the end of each segment: 6 floats per primitive
-                                      and key */
+    const float* widths;           /* ribbons: 8 floats per primitive and key: unit vectors across, at the beginning and at the end of each
+                                      segment, and how much of the way along the axis is added from the one and from the other */
     uint32_t hasEndcaps;           /* curves */
     const void* shape;             /* the runtime's own */
 } OxrtGeometry;
