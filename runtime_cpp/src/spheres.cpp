@@ -1,16 +1,79 @@
 // Spheres: Embree's points of type sphere. OptiX offers only the hit where the ray enters; the sign of a radius does not count.
 #include "array.h"
 #include "error.h"
+#include "own_shape.h"
 #include "shape.h"
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 
 namespace oxrt {
 
 namespace {
 
 constexpr std::size_t floatsPerSphere = 4;
+
+// Where field `field` of lane `lane` stands in a packet of `width`; the fields follow each other as in RTCRay and RTCHit.
+float& fieldOf(void* packet, unsigned field, unsigned width, unsigned lane)
+{
+    return static_cast<float*>(packet)[field * width + lane];
+}
+
+enum RayField { ORIGIN = 0, TNEAR = 3, DIRECTION = 4, TIME = 7, TFAR = 8 };
+enum HitField { NORMAL = 0, PRIMITIVE = 5 };
+
+// Embree computes a distance with an error relative to the radius. Where the ray begins nearer to the sphere than that, the distance is
+// computed again: in double precision, and without the difference of two large numbers.
+double entryDistance(const Point4& sphere, const RTCFilterFunctionNArguments& arguments, unsigned lane)
+{
+    const double center[3] = {sphere.x, sphere.y, sphere.z};
+    double away[3];
+    double direction[3];
+    double along = 0, lengthSquared = 0, distanceSquared = 0;
+    for (unsigned axis = 0; axis < 3; ++axis) {
+        away[axis] = center[axis] - fieldOf(arguments.ray, ORIGIN + axis, arguments.N, lane);
+        direction[axis] = fieldOf(arguments.ray, DIRECTION + axis, arguments.N, lane);
+        along += away[axis] * direction[axis];
+        lengthSquared += direction[axis] * direction[axis];
+        distanceSquared += away[axis] * away[axis];
+    }
+    double acrossSquared = 0;
+    for (unsigned axis = 0; axis < 3; ++axis) {
+        const double across = away[axis] - along / lengthSquared * direction[axis];
+        acrossSquared += across * across;
+    }
+    const double radius = sphere.w;
+    const double half = std::sqrt(std::max(0.0, (radius * radius - acrossSquared) * lengthSquared));
+    return (distanceSquared - radius * radius) / (along + half);
+}
+
+void enterSpheres(const RTCFilterFunctionNArguments* arguments)
+{
+    dropBackFaces(arguments);
+    const auto& view = *static_cast<const OxrtGeometry*>(arguments->geometryUserPtr);
+    for (unsigned lane = 0; lane < arguments->N; ++lane) {
+        if (arguments->valid[lane] != -1) continue;
+        std::uint32_t primitive;
+        std::memcpy(&primitive, &fieldOf(arguments->hit, PRIMITIVE, arguments->N, lane), sizeof primitive);
+        const auto* sphere = reinterpret_cast<const Point4*>(view.vertices) + primitive;
+        float& t = fieldOf(arguments->ray, TFAR, arguments->N, lane);
+        float lengthSquared = 0;
+        for (unsigned axis = 0; axis < 3; ++axis) {
+            const float d = fieldOf(arguments->ray, DIRECTION + axis, arguments->N, lane);
+            lengthSquared += d * d;
+        }
+        if (!(t * t * lengthSquared < sphere->w * sphere->w)) continue;
+        const KeyPosition at = keyPosition(view.keyCount, fieldOf(arguments->ray, TIME, arguments->N, lane));
+        sphere += view.vertexCount * at.key;
+        const Point4 now = at.fraction == 0 ? *sphere : *sphere * (1 - at.fraction) + sphere[view.vertexCount] * at.fraction;
+        const auto entry = static_cast<float>(entryDistance(now, *arguments, lane));
+        if (entry >= fieldOf(arguments->ray, TNEAR, arguments->N, lane))
+            t = entry;
+        else
+            arguments->valid[lane] = 0;
+    }
+}
 
 class Spheres final : public Shape {
 public:
@@ -45,7 +108,7 @@ public:
         for (std::uint32_t key = 0; key < keyCount; ++key)
             embree.rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, key, RTC_FORMAT_FLOAT4, spheres.data(),
                                               sizeof(float) * floatsPerSphere * count * key, sizeof(float) * floatsPerSphere, count);
-        setFilter(embree, geometry, dropBackFaces);
+        setFilter(embree, geometry, enterSpheres);
         return geometry;
     }
 
@@ -68,12 +131,6 @@ private:
     Array<float> spheres;
 };
 
-// Where field `field` of lane `lane` stands in a packet of `width`; the fields follow each other as in RTCRay and RTCHit.
-float fieldOf(const void* packet, unsigned field, unsigned width, unsigned lane)
-{
-    return static_cast<const float*>(packet)[field * width + lane];
-}
-
 } // namespace
 
 void checkSpheres(const OxrtBuildInput& input, unsigned number)
@@ -94,7 +151,6 @@ std::unique_ptr<Shape> makeSpheres(const OxrtBuildInput& input)
 
 void dropBackFaces(const RTCFilterFunctionNArguments* arguments)
 {
-    enum { DIRECTION = 4, NORMAL = 0 };
     for (unsigned lane = 0; lane < arguments->N; ++lane) {
         if (arguments->valid[lane] != -1) continue;
         float cosine = 0;

@@ -236,7 +236,7 @@ def _at_time(item: dict[str, Any], motion: dict[str, Any] | None, time: float) -
     keyed = dict(item)
     for name in ("vertices", "radii", "aabbs"):
         if name in item:
-            keys = [np.array([float(value) for value in key], np.float64) for key in item[name]]
+            keys = [_vector(key) for key in item[name]]
             if len(keys) == 1 or motion is None or motion["numKeys"] < 2:
                 keyed[name] = keys[0]
             else:
@@ -293,8 +293,10 @@ def _sphere_hits(item: dict[str, Any], path: Path, ray: _Ray) -> list[Hit]:
     to_center = ray.origin - centers
     a = ray.direction @ ray.direction
     b = to_center @ ray.direction
-    root = b * b - a * (np.sum(to_center * to_center, axis=1) - radii * radii)
-    t = (-b - np.sqrt(root)) / a
+    across = to_center - (b / a)[:, None] * ray.direction
+    root = a * (radii * radii - np.sum(across * across, axis=1))
+    # without the difference of two large numbers where the ray begins near a large sphere
+    t = (np.sum(to_center * to_center, axis=1) - radii * radii) / (np.sqrt(root) - b)
     inside = (root > 0.0) & (radii > 0.0) & (t > ray.tmin) & (t < ray.tmax)
     return [Hit(float(t[i]), _primitive(item, i), _record(item, i), SPHERE, 0.0, 0.0, _flags(item, i), path)
             for i in np.flatnonzero(inside)]
@@ -332,4 +334,6 @@ def _identity() -> Floats:
 
 
 def _vector(values: Any) -> Floats:
-    return np.array([float(value) for value in values], np.float64)
+    """The numbers that were traced: of binary32, of which the files hold nine digits."""
+    with np.errstate(over="ignore"):
+        return np.array([float(value) for value in values], np.float32).astype(np.float64)

@@ -76,3 +76,31 @@ def test_random_spheres_agree_with_brute_force(harness: Harness) -> None:
         if hits:
             assert closest(result)["prim"] == hits[0].primitive
             assert closest(result)["tmax"] == pytest.approx(hits[0].t, rel=1e-3)
+
+
+@pytest.mark.parametrize("radius", [1e-6, 1e-3, 1e2, 1e3, 1e4, 1e5, 1e6])
+def test_distances_to_spheres_of_any_size(harness: Harness, radius: float) -> None:
+    # Near the surface of a large sphere the distance is a small difference of large numbers; it must not lose digits all the same.
+    random = np.random.default_rng(210)
+    size = min(radius, 1.0)
+    scene = [gas(spheres([(0, -radius, 0)], [radius]))]
+    origins = random.uniform((-5, 0.1, -5), (5, 5, 5), (60, 3)) * size
+    ends = random.uniform((-5, -0.6, -5), (5, -0.4, 5), (60, 3)) * size
+    rays = [ray(np.float32(origin), np.float32((end - origin) / size)) for origin, end in zip(origins, ends, strict=True)]
+    hit = 0
+    for result, one in zip(shoot(harness, scene, *rays), rays, strict=True):
+        found = [event.t for event in brute_force.scene_candidates(scene, one["in"])]
+        if not missed(result) and found:
+            hit += 1
+            assert closest(result)["tmax"] == pytest.approx(found[0], rel=1e-6)
+    assert hit > 0
+
+
+def test_a_moving_large_sphere_keeps_its_digits(harness: Harness) -> None:
+    item = spheres([(0, -1e6, 0)], [1e6])
+    item["vertices"] = [[0.0, -1e6, 0.0], [0.0, -1e6 + 4.0, 0.0]]
+    item["radii"] = [[1e6], [1e6]]
+    scene = [{**gas(item), "motion": {"numKeys": 2, "flags": 0, "timeBegin": 0.0, "timeEnd": 1.0}}]
+    rays = [ray((0, 10, 0), (0, -1, 0), time=time) for time in (0.0, 0.5, 1.0)]
+    results = trace(harness, scene, rays, [hitgroup(kind="sphere")], motion=True)
+    assert [closest(result)["tmax"] for result in results] == pytest.approx([10.0, 8.0, 6.0], abs=1e-4)
