@@ -12,6 +12,7 @@ from collections.abc import Sequence
 from optixc.diagnostics import ChainLink
 from optixc.frontend.annotations import resolve_type
 from optixc.frontend.check_expr import check_expression
+from optixc.frontend.check_payload_flow import check_payload_flow
 from optixc.frontend.check_program import check_parameter_names, check_requirements, program_parameters
 from optixc.frontend.check_returns import check_returns
 from optixc.frontend.check_stmt import check_block
@@ -176,6 +177,7 @@ class Checker:
             c.instance.result = declared
         falls_through = check_block(c, symbol.node.body)
         check_returns(c, symbol, declared, falls_through)
+        check_payload_flow(c, symbol.node.body)
         c.instance.is_complete = True
 
     def _constant(self, c: Context, symbol: ConstantSymbol) -> ConstantUse | None:

@@ -208,7 +208,9 @@ def check_place(c: Context, target: ast.Attribute | ast.Subscript) -> t.Type | N
     if symbol is not None and not isinstance(symbol, ParamsSymbol) and static_symbol(c, target) is not None:
         c.error("OX307", target, f"`{ast.unparse(target)}` cannot be assigned in a shader", "write to an array or a payload")
         return None
+    c.stored = _innermost(target)
     info = c.check(target)
+    c.stored = None
     if isinstance(info.type, Invalid):
         return None
     stored: t.Type
@@ -230,6 +232,13 @@ def check_place(c: Context, target: ast.Attribute | ast.Subscript) -> t.Type | N
         return None
     note_write(c, place, target)
     return stored
+
+
+def _innermost(target: ast.Attribute | ast.Subscript) -> ast.expr:
+    """The part of a place that stands on a name."""
+    while isinstance(target.value, ast.Attribute | ast.Subscript):
+        target = target.value
+    return target
 
 
 def check_augmented(c: Context, node: ast.AugAssign) -> None:

@@ -199,7 +199,7 @@ def _check_field(c: Context, node: ast.Attribute, base: ExprInfo, struct: t.Stru
         return c.error("OX311", node, f"`{struct}` has no field `{node.attr}`", note)
     if isinstance(field.type, t.Void):
         return ExprInfo(INVALID)
-    if isinstance(base.use, LocalUse) and is_payload_parameter(c, base.use.local) and isinstance(node.ctx, ast.Load):
+    if isinstance(base.use, LocalUse) and is_payload_parameter(c, base.use.local) and node is not c.stored:
         c.note_payload_access(base.use.local, PayloadAccess(node.attr, False, c.span(node)))
     return ExprInfo(widened(field.type), use=FieldUse(node.attr, field.type), writes=base.writes)
 

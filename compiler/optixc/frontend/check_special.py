@@ -7,8 +7,9 @@ import ast
 from optixc.frontend.annotations import resolve_type
 from optixc.frontend.arguments import bind_arguments, refuse_stars
 from optixc.frontend.check_intrinsic import require_row
-from optixc.frontend.checked import CallableUse, CopyUse, ExprInfo, ReportUse, SbtDataUse
+from optixc.frontend.checked import CallableUse, CopyUse, ExprInfo, PayloadAccess, ReportUse, SbtDataUse
 from optixc.frontend.context import Context, describe
+from optixc.frontend.places import is_payload_parameter, place_of
 from optixc.frontend.weak import INVALID, Invalid, WeakInt, is_weak
 from optixc.ir import types as t
 from optixc.ir.intrinsic_rows import INTRINSICS
@@ -49,6 +50,10 @@ def _check_copy(c: Context, node: ast.Call) -> ExprInfo:
         return c.error("OX302", bound[0], f"copy() does not take {describe(info.type)}", "a struct or fixed array")
     if isinstance(info.type, Invalid):
         return info
+    place = place_of(c, bound[0])
+    if place.local is not None and isinstance(info.type, t.Struct) and not place.field and is_payload_parameter(c, place.local):
+        for field in info.type.fields:
+            c.note_payload_access(place.local, PayloadAccess(field.name, False, c.span(bound[0])))
     return ExprInfo(c.settle(bound[0]), use=CopyUse(bound[0]), writes=info.writes, fresh=True)
 
 

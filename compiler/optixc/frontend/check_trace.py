@@ -6,13 +6,15 @@ import ast
 
 from optixc.frontend.arguments import bind_arguments, check_written
 from optixc.frontend.check_intrinsic import require_row
-from optixc.frontend.checked import Argument, DefaultArgument, ExprInfo, TraceUse
+from optixc.frontend.check_payload_flow import is_passed, is_returned
+from optixc.frontend.checked import Argument, DefaultArgument, ExprInfo, PayloadAccess, TraceUse
 from optixc.frontend.context import Context, describe
-from optixc.frontend.places import Root, note_write, place_of, why_read_only
+from optixc.frontend.places import Root, is_payload_parameter, note_write, place_of, why_read_only
 from optixc.frontend.weak import INVALID, Invalid, WeakInt
 from optixc.ir import types as t
 from optixc.ir.intrinsic_rows import INTRINSICS
 from optixc.ir.intrinsics import Generic
+from optixc.ir.nodes import Local
 
 MAX_WORDS = 32
 _CLASS = "use an `@ox.payload` class"
@@ -62,7 +64,17 @@ def _check_struct_payload(c: Context, name: str, arguments: tuple[Argument, ...]
     if reason is not None or place.root is Root.ELEMENT:
         return c.error("OX307", payload, f"the payload changes in the call, but {reason or 'it is an element of an array'}", "use a local")
     note_write(c, place, payload)
+    if place.local is not None and is_payload_parameter(c, place.local):
+        _note_passed_on(c, place.local, type_, name, payload)
     return ExprInfo(t.VOID, use=TraceUse(name, arguments, payload, type_), writes=True)
+
+
+def _note_passed_on(c: Context, local: Local, struct: t.Struct, name: str, payload: ast.expr) -> None:
+    """A program that traces with its own payload reads what the trace takes from it and writes what the trace brings back."""
+    for field in struct.fields:
+        for is_write, happens in ((False, is_passed(field, name)), (True, is_returned(field, name))):
+            if happens:
+                c.note_payload_access(local, PayloadAccess(field.name, is_write, c.span(payload)))
 
 
 def _check_tuple_payload(c: Context, name: str, arguments: tuple[Argument, ...], payload: ast.expr) -> ExprInfo:

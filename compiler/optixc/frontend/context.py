@@ -60,6 +60,8 @@ class Context:
     returns: list[ast.Return] = field(default_factory=list)
     declared: dict[str, t.Type] = field(default_factory=dict)
     poisoned: set[str] = field(default_factory=set)
+    stored: ast.expr | None = None
+    """The innermost field of the place that is being assigned: `ray.color` of `ray.color.x = 1.0`, which does not read it."""
 
     @property
     def source(self) -> SourceFile:
