@@ -162,11 +162,13 @@ class DeviceContext(Context):
         simd: Simd = "auto",
         math: str = "precise",
         debug: bool = False,
+        trap_nan: bool = False,
     ) -> Pipeline:
         """Compiles the programs of `groups` together, or takes them from the cache.
 
         `max_trace_depth` bounds recursive traces; `bound_values` become constants; `simd` is "auto", 1, 8 or 16 lanes; `math` is
-        "precise" or "fast"; `debug` checks array bounds and assertions and keeps line information.
+        "precise" or "fast"; `debug` checks array bounds and assertions and keeps line information; with it,
+        `trap_nan` ends the launch at the first NaN.
         """
         _ = self.handle
         if isinstance(groups, ProgramGroup) or not isinstance(groups, Sequence) or not groups:
@@ -188,6 +190,7 @@ class DeviceContext(Context):
             simd=simd,
             math=math,
             debug=debug,
+            trap_nan=trap_nan,
             validation=self.validation,
             bound_values={name: one.value for name, one in bound.items()},
         )

@@ -60,6 +60,7 @@ class CompileOptions:
     simd: Simd = "auto"
     math: str = "precise"
     debug: bool = False
+    trap_nan: bool = False
     validation: bool = False
     target: str = "native"
     optimization: int = 3
@@ -68,6 +69,8 @@ class CompileOptions:
     def __post_init__(self) -> None:
         if isinstance(self.simd, bool) or self.simd not in ("auto", 1, 8, 16):
             raise InvalidValueError(f'simd must be "auto", 1, 8 or 16, not {self.simd!r}')
+        if self.trap_nan and not self.debug:
+            raise InvalidValueError("trap_nan is for debug builds: give debug=True (--debug) as well")
         if self.math not in ("precise", "fast"):
             raise InvalidValueError(f'math must be "precise" or "fast", not {self.math!r}')
         if self.target not in TARGETS:
@@ -77,12 +80,12 @@ class CompileOptions:
         is_number = isinstance(self.max_trace_depth, int) and not isinstance(self.max_trace_depth, bool)
         if not is_number or not 0 <= self.max_trace_depth <= MAX_TRACE_DEPTH:
             raise InvalidValueError(f"max_trace_depth must be 0 to {MAX_TRACE_DEPTH}, not {self.max_trace_depth!r}")
-        for name in ("debug", "validation"):
+        for name in ("debug", "trap_nan", "validation"):
             if not isinstance(getattr(self, name), bool):
                 raise InvalidValueError(f"{name} must be False or True, not {getattr(self, name)!r}")
 
     def key(self) -> str:
         """A text that is equal exactly for equal options."""
         bound = sorted((name, repr(value)) for name, value in self.bound_values.items())
-        rest = (self.max_trace_depth, self.simd, self.math, self.debug, self.validation, self.target, self.optimization)
+        rest = (self.max_trace_depth, self.simd, self.math, self.debug, self.trap_nan, self.validation, self.target, self.optimization)
         return repr((self.pipeline, rest, bound))

@@ -10,6 +10,8 @@
 #include <cstdio>
 #include <cstring>
 #include <pthread.h>
+#include <string>
+#include <string_view>
 
 namespace oxrt {
 
@@ -159,6 +161,37 @@ void Launch::cancel()
     std::atomic_ref(cancelWord).store(1);
 }
 
+namespace {
+
+// Where a message has a place for a value; values without one follow the message.
+constexpr char valuePlace = '\1';
+
+// Indices with all their digits, other numbers as float32 needs them.
+std::string numberText(double value)
+{
+    const bool isIndex = std::abs(value) < 0x1p53 && value == std::trunc(value);
+    char text[32];
+    std::snprintf(text, sizeof text, "%.*g", isIndex ? 16 : 9, value);
+    return text;
+}
+
+void writeMessage(char* target, std::size_t size, std::string_view message, const double* values, std::uint32_t valueCount)
+{
+    std::string text;
+    std::uint32_t used = 0;
+    for (const char c : message) {
+        if (c == valuePlace && used < valueCount)
+            text += numberText(values[used++]);
+        else
+            text += c;
+    }
+    for (std::uint32_t i = used; i < valueCount; ++i)
+        text += (i == used ? " (" : ", ") + numberText(values[i]) + (i + 1 == valueCount ? ")" : "");
+    std::snprintf(target, size, "%s", text.c_str());
+}
+
+} // namespace
+
 void Launch::recordFault(const OxrtThread& thread, std::int32_t code, const char* path, std::uint32_t line, const char* message,
                          const double* values, std::uint32_t valueCount)
 {
@@ -168,13 +201,7 @@ void Launch::recordFault(const OxrtThread& thread, std::int32_t code, const char
     std::copy_n(thread.index, 3, faultReport.index);
     faultReport.line = line;
     std::snprintf(faultReport.path, sizeof faultReport.path, "%s", path ? path : "");
-    auto length = static_cast<std::size_t>(std::snprintf(faultReport.message, sizeof faultReport.message, "%s", message ? message : ""));
-    for (std::uint32_t i = 0; i < valueCount && length < sizeof faultReport.message; ++i) {
-        // Indices with all their digits, other numbers as float32 needs them.
-        const bool isIndex = std::abs(values[i]) < 0x1p53 && values[i] == std::trunc(values[i]);
-        length += static_cast<std::size_t>(std::snprintf(faultReport.message + length, sizeof faultReport.message - length, "%s%.*g%s",
-                                                         i == 0 ? " (" : ", ", isIndex ? 16 : 9, values[i], i + 1 == valueCount ? ")" : ""));
-    }
+    writeMessage(faultReport.message, sizeof faultReport.message, message ? message : "", values, valueCount);
     std::atomic_ref(cancelWord).store(1);
 }
 

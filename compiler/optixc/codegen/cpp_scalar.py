@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import assert_never
 
+from optixc.codegen.assertions import assertion_call
 from optixc.codegen.cpp_expr import AND, UNARY, Expressions
 from optixc.codegen.cpp_scalar_calls import ScalarCalls
 from optixc.codegen.cpp_scalar_dialect import ScalarDialect
@@ -226,8 +227,9 @@ class ScalarFunction:
 
     def _assert(self, statement: Assert) -> None:
         if self._options.is_checked:
-            condition, message = self._expressions.text(statement.condition), string_literal(statement.message)
-            self._writer.line(f"oxrt::assertTrue({self._names.thread}, {condition}, {message});", statement.span)
+            values = [self._expressions.text(value) for value in statement.values]
+            condition = self._expressions.text(statement.condition)
+            self._writer.line(assertion_call(statement, [self._names.thread], condition, values), statement.span)
 
     def _print(self, statement: Print) -> None:
         items = [string_literal(item) if isinstance(item, str) else self._expressions.text(item) for item in statement.items]

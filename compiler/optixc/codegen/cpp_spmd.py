@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from typing import assert_never
 
+from optixc.codegen.assertions import assertion_call
 from optixc.codegen.cpp_expr import PRIMARY
 from optixc.codegen.cpp_signatures import Signatures
 from optixc.codegen.cpp_spmd_calls import LaneCalls
@@ -16,7 +17,7 @@ from optixc.codegen.cpp_spmd_clones import Clones
 from optixc.codegen.cpp_spmd_expr import LaneDialect, LaneExpressions
 from optixc.codegen.cpp_spmd_types import WideTypes
 from optixc.codegen.declarations import declarations, is_changed
-from optixc.codegen.names import Scope, string_literal
+from optixc.codegen.names import Scope
 from optixc.codegen.needs import Options
 from optixc.codegen.writer import Writer
 from optixc.ir.control import ends_in_loop, polls
@@ -413,8 +414,9 @@ class LaneFunction:
 
     def _assert(self, statement: Assert) -> None:
         if self._options.is_checked:
-            condition, message = self._expressions.wide(statement.condition), string_literal(statement.message)
-            self._writer.line(f"oxrt::assertTrue({self._names.thread}, {self._mask}, {condition}, {message});", statement.span)
+            values = [self._expressions.text(value) for value in statement.values]
+            condition = self._expressions.wide(statement.condition)
+            self._writer.line(assertion_call(statement, [self._names.thread, self._mask], condition, values), statement.span)
 
 
 def _chain(place: Expr) -> list[Expr]:

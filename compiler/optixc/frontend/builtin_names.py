@@ -82,7 +82,7 @@ SPECIAL_FORMS = frozenset(
     }
 )
 
-PYTHON_FUNCTIONS = frozenset({"abs", "min", "max", "range", "print", "len", "pow"})
+PYTHON_FUNCTIONS = frozenset({"abs", "min", "max", "range", "print", "len", "pow", "breakpoint"})
 """Built-in functions of Python that shaders may call; all others are refused by name."""
 
 MATH_CONSTANTS: dict[str, float] = {"pi": math.pi, "e": math.e, "tau": math.tau, "inf": math.inf, "nan": math.nan}

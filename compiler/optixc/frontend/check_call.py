@@ -107,7 +107,6 @@ _PYTHON_BUILTINS = {
     "super": "a struct has no methods",
     "iter": "write `for i in range(n)`",
     "next": "write `for i in range(n)`",
-    "breakpoint": "it works in ox.interpret only",
     "ord": "text is not a value in shaders",
     "chr": "text is not a value in shaders",
 }
@@ -136,8 +135,8 @@ def _check_builtin(c: Context, node: ast.Call, name: str) -> ExprInfo:
         return check_intrinsic(c, node, name)
     if name == "len":
         return _check_length(c, node)
-    if name == "print":
-        return c.error("OX402", node, "print() gives no value", "write it as a statement of its own")
+    if name in ("print", "breakpoint"):
+        return c.error("OX402", node, f"{name}() gives no value", "write it as a statement of its own")
     if name == "range":
         return c.error("OX402", node, "range() stands in `for` only", "write `for i in range(n)`")
     return c.error("OX319", node.func, f"`{name}` cannot be called in a shader", "")

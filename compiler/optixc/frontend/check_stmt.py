@@ -12,12 +12,13 @@ from optixc.frontend.check_loops import check_for, check_while
 from optixc.frontend.check_match import check_match
 from optixc.frontend.check_operators import check_condition
 from optixc.frontend.check_print import check_print, message_of
-from optixc.frontend.checked import IntrinsicUse, ReportUse, returned_value
+from optixc.frontend.checked import BreakpointUse, ExprInfo, IntrinsicUse, ReportUse, returned_value
 from optixc.frontend.context import Context
 from optixc.frontend.environment import Way, join
 from optixc.frontend.refusals import refuse_statement
 from optixc.frontend.resolve_static import static_symbol
 from optixc.frontend.symbols import BuiltinName
+from optixc.ir import types as t
 from optixc.ir.intrinsics import Effect
 from optixc.ir.programs import ProgramKind
 
@@ -69,9 +70,14 @@ def _check_expression_statement(c: Context, node: ast.Expr) -> bool:
     if isinstance(node.value, ast.Constant) and isinstance(node.value.value, str):
         return True
     func = node.value.func if isinstance(node.value, ast.Call) else None
-    if isinstance(func, ast.Name | ast.Attribute) and static_symbol(c, func) == BuiltinName("print"):
+    symbol = static_symbol(c, func) if isinstance(func, ast.Name | ast.Attribute) else None
+    if symbol == BuiltinName("print"):
         assert isinstance(node.value, ast.Call)
         check_print(c, node.value)
+        return True
+    if symbol == BuiltinName("breakpoint"):
+        assert isinstance(node.value, ast.Call)
+        _check_breakpoint(c, node.value)
         return True
     info = c.check(node.value)
     match info.use:
@@ -80,6 +86,12 @@ def _check_expression_statement(c: Context, node: ast.Expr) -> bool:
     if not info.writes and info.type is not None:
         c.settle(node.value)
     return True
+
+
+def _check_breakpoint(c: Context, node: ast.Call) -> None:
+    if node.args or node.keywords:
+        c.error("OX305", node, "breakpoint() takes no arguments in shaders", "write breakpoint()")
+    c.instance.info[node] = ExprInfo(t.VOID, use=BreakpointUse())
 
 
 def _check_if(c: Context, node: ast.If) -> bool:

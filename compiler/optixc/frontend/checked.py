@@ -178,6 +178,11 @@ class TraceUse:
 
 
 @dataclass(frozen=True)
+class BreakpointUse:
+    """`breakpoint()`: the interpreter stops there, compiled code runs on."""
+
+
+@dataclass(frozen=True)
 class ReportUse:
     """report_intersection or throw_exception: fixed arguments, then one attributes struct or scalars of 32 bits."""
 
@@ -221,6 +226,7 @@ Use = (
     | SbtDataUse
     | CopyUse
     | TraceUse
+    | BreakpointUse
     | ReportUse
     | CallableUse
     | HelperUse

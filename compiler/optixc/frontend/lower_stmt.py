@@ -7,7 +7,7 @@ from dataclasses import replace
 from functools import partial
 
 from optixc.frontend.check_print import print_parts
-from optixc.frontend.checked import LocalUse, returned_value
+from optixc.frontend.checked import BreakpointUse, LocalUse, returned_value
 from optixc.frontend.lower_block import Block, FunctionLowering, is_stable, literal
 from optixc.frontend.lower_call import NOTHING, tuple_item
 from optixc.frontend.lower_convert import component, convert, is_simple, read
@@ -113,6 +113,8 @@ def _lower_expression_statement(low: FunctionLowering, node: ast.Expr, block: Bl
     if value not in low.instance.info:
         assert isinstance(value, ast.Call)
         _lower_print(low, value, block)
+        return
+    if isinstance(low.instance.info[value].use, BreakpointUse):
         return
     before = len(block.statements)
     result = lower_expression(low, value, block)

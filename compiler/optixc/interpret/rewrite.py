@@ -10,7 +10,7 @@ from collections.abc import Callable, Sequence
 from typing import Any
 
 from optixc.frontend.check_print import print_parts
-from optixc.frontend.checked import FunctionInstance
+from optixc.frontend.checked import BreakpointUse, FunctionInstance
 from optixc.interpret import values
 from optixc.interpret.code import Code
 from optixc.interpret.places import assign, augment
@@ -69,6 +69,8 @@ def _statement(code: Code, node: ast.stmt) -> list[ast.stmt]:
         case ast.Expr(value=ast.Constant()) | ast.Pass():
             return [ast.copy_location(ast.Pass(), node)]
         case ast.Expr(value=value):
+            if value in code.instance.info and isinstance(code.info(value).use, BreakpointUse):
+                return [ast.copy_location(ast.Expr(code.call(breakpoint, [], value, "breakpoint")), node)]
             is_print = value not in code.instance.info
             made = _print(code, value) if is_print and isinstance(value, ast.Call) else rewrite_expression(code, value)
             return [ast.copy_location(ast.Expr(made), node)]

@@ -204,11 +204,15 @@ class CallCallable:
 
 @dataclass(frozen=True)
 class Assert:
-    """`assert condition, message`: a fault with the source line if condition is false; compiled in debug and validation only."""
+    """`assert condition, message`: a fault with the source line if condition is false; compiled in debug and validation only.
+
+    `values` are scalars that the fault shows by name; passes of checked builds find them.
+    """
 
     condition: Expr
     message: str
     span: Span
+    values: tuple[Expr, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -298,6 +302,7 @@ class PipelineOptions:
     lanes: int = 1
     fast_math: bool = False
     debug: bool = False
+    trap_nan: bool = False
     validation: bool = False
     uses_motion_blur: bool = False
     allow_opacity_micromaps: bool = False

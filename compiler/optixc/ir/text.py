@@ -154,7 +154,8 @@ def _simple_statement(
             arguments = _list((statement.index, *statement.arguments))
             return f"{_target(statement.target)}{kind}({arguments}) -> {statement.result}"
         case Assert():
-            return f"assert {_expression(statement.condition)}, {statement.message!r}"
+            shown = f" shows {_list(statement.values)}" if statement.values else ""
+            return f"assert {_expression(statement.condition)}, {statement.message!r}{shown}"
         case Print():
             items = ", ".join(repr(item) if isinstance(item, str) else _expression(item) for item in statement.items)
             return f"print({items}, sep={statement.separator!r}, end={statement.end!r})"

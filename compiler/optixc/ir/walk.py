@@ -78,7 +78,7 @@ _OPERANDS: dict[type, tuple[str, ...]] = {
     CallIntrinsic: ("arguments",),
     Trace: ("arguments", "payload"),
     CallCallable: ("index", "arguments"),
-    Assert: ("condition",),
+    Assert: ("condition", "values"),
     Print: ("items",),
 }
 """Fields that hold an expression, a tuple of them, or None; strings among the items of a print are no expressions."""

@@ -81,6 +81,7 @@ def features(pipeline: Pipeline) -> Features:
             _first(pipeline, "print", lambda s: isinstance(s, Print)),
             _first(pipeline, "loops that poll for cancellation", lambda s: isinstance(s, While | ForRange) and polls(s)),
             _option("assertions", options.debug or options.validation, _first(pipeline, "", lambda s: isinstance(s, Assert)).span),
+            _option("NaN traps", options.trap_nan),
             _option("array bounds checks", options.debug or options.validation, _element(pipeline)),
             _option("validation", options.validation),
             _option("motion", options.uses_motion_blur),

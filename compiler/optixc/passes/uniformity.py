@@ -36,7 +36,7 @@ from optixc.ir.nodes import (
 )
 from optixc.ir.programs import ProgramKind
 from optixc.ir.walk import Body, blocks, operands, place_root, statements
-from optixc.passes.regions import Region, homes
+from optixc.passes.regions import Region, homes, is_read_behind
 
 _VARYING_OF_THREAD = frozenset({"get_launch_index", "get_exception_code", *(f"get_exception_detail_{i}" for i in range(8))})
 _REPORT = "report_intersection"
@@ -161,6 +161,7 @@ class _FunctionAnalysis:
         self._clone = clone
         self._analysis = analysis
         self._homes = homes(clone.function)
+        self._kept: dict[int, bool] = {}
         self._changed = False
 
     def run(self) -> bool:
@@ -189,7 +190,8 @@ class _FunctionAnalysis:
                 bounds_vary = any(self.varies(bound) for bound in (start, stop, step))
                 if bounds_vary:
                     self._diverges(statement)
-                self._assigned(statement.target.name, bounds_vary, (*path, statement) if self._is_own(statement) else path)
+                # Lanes that leave at different turns have different last values, which matters only to those who look.
+                self._assigned(statement.target.name, bounds_vary, (*path, statement) if self._is_kept(statement, path) else path)
             case Break() | Continue():
                 self._leaves_loop(path)
             case Return(value=value):
@@ -214,9 +216,11 @@ class _FunctionAnalysis:
         for block in blocks(statement):
             self._body(block, (*path, statement))
 
-    def _is_own(self, loop: ForRange) -> bool:
-        """Whether the loop's variable is used nowhere else."""
-        return self._homes.get(loop.target.name, ()) != () and self._homes[loop.target.name][-1] is loop
+    def _is_kept(self, loop: ForRange, path: Region) -> bool:
+        """Whether anybody reads the loop's variable behind the loop."""
+        if id(loop) not in self._kept:
+            self._kept[id(loop)] = is_read_behind(self._clone.function.body, path, loop, loop.target.name)
+        return self._kept[id(loop)]
 
     def _store(self, place: Expr, varies: bool, path: Region) -> None:
         root = place_root(place)

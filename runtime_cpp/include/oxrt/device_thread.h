@@ -40,6 +40,10 @@ OXRT_INLINE void assertTrue(OxrtThread& thread, bool condition, const char* mess
     if (__builtin_expect(!condition, 0))
         fault(thread, OXRT_FAULT_ASSERT, message, place);
 }
+template <class... T> OXRT_INLINE void assertTrue(OxrtThread& thread, Place place, bool condition, const char* message, T... values) {
+    if (__builtin_expect(!condition, 0))
+        faultWithValues(thread, OXRT_FAULT_ASSERT, message, place, values...);
+}
 
 /* Widened copies of what a print shows. */
 struct PrintValues {
@@ -108,6 +112,19 @@ template <class... T> __attribute__((noinline)) void print(OxrtThread& thread, c
 
 /* ---- checked access ------------------------------------------------------------------------------------------------------------- */
 
+/* Names the indices and the shape of the array that they miss. */
+template <class T, class... I> void faultOfIndex(OxrtThread& thread, Place place, const Array<T, 1>& array, I... indices) {
+    faultWithValues(thread, OXRT_FAULT_BOUNDS, "index out of range (\1), the shape is (\1)", place, indices..., array.shape[0]);
+}
+template <class T, class... I> void faultOfIndex(OxrtThread& thread, Place place, const Array<T, 2>& array, I... indices) {
+    faultWithValues(thread, OXRT_FAULT_BOUNDS, "index out of range (\1, \1), the shape is (\1, \1)", place, indices..., array.shape[0],
+                    array.shape[1]);
+}
+template <class T, class... I> void faultOfIndex(OxrtThread& thread, Place place, const Array<T, 3>& array, I... indices) {
+    faultWithValues(thread, OXRT_FAULT_BOUNDS, "index out of range (\1, \1, \1), the shape is (\1, \1, \1)", place, indices..., array.shape[0],
+                    array.shape[1], array.shape[2]);
+}
+
 /* Array access with a check: an index out of range reads zero, or has `contains` say no, and is a fault. */
 struct Checked {
     OxrtThread& thread;
@@ -116,7 +133,7 @@ struct Checked {
     template <class T, int RANK, class... I> OXRT_INLINE bool contains(const Array<T, RANK>& array, I... indices) const {
         if (__builtin_expect(array.contains(indices...), 1))
             return true;
-        faultWithValues(thread, OXRT_FAULT_BOUNDS, "index out of range", place, indices...);
+        faultOfIndex(thread, place, array, indices...);
         return false;
     }
     template <class T, int RANK, class... I> OXRT_INLINE T load(const Array<T, RANK>& array, I... indices) const {

@@ -75,6 +75,15 @@ OXRT_INLINE void assertTrue(LanesThread<W>& thread, Lanes<bool, W> mask, Lanes<b
     if (__builtin_expect(any(failed), 0))
         fault(thread.atLane(firstLane(failed)), OXRT_FAULT_ASSERT, message, place);
 }
+template <int W, class... T>
+OXRT_INLINE void assertTrue(LanesThread<W>& thread, Place place, Lanes<bool, W> mask, Lanes<bool, W> condition, const char* message,
+                            T... values) {
+    const Lanes<bool, W> failed = without(mask, condition);
+    if (__builtin_expect(any(failed), 0)) {
+        const int lane = firstLane(failed);
+        faultWithValues(thread.atLane(lane), OXRT_FAULT_ASSERT, message, place, inLane(values, lane)...);
+    }
+}
 
 /* The lanes of the mask whose indices are inside of the array; a fault for the first that is not. */
 template <int W, class A, class... I>
@@ -82,7 +91,7 @@ OXRT_INLINE Lanes<bool, W> insideAt(LanesThread<W>& thread, Lanes<bool, W> mask,
     const Lanes<bool, W> found = mask & inside<W>(array, indices...);
     if (const Lanes<bool, W> outside = without(mask, found); __builtin_expect(any(outside), 0)) {
         const int lane = firstLane(outside);
-        faultWithValues(thread.atLane(lane), OXRT_FAULT_BOUNDS, "index out of range", place, inLane(indices, lane)...);
+        faultOfIndex(thread.atLane(lane), place, inLane(array, lane), inLane(indices, lane)...);
     }
     return found;
 }

@@ -2,7 +2,8 @@
    closesthit programs: shader.py:52
    print: shader.py:46
    loops that poll for cancellation: shader.py:31
-   assertions: shader.py:45
+   assertions: shader.py:44
+   NaN traps: asked for by the pipeline's options
    array bounds checks: shader.py:43
    validation: asked for by the pipeline's options
 */
@@ -45,6 +46,8 @@ float total(OxrtThread& thread, State& state, int32_t count) {
             break;
 #line 32 "shader.py"
         result = result + state.weights.load(k);
+#line 32 "shader.py"
+        oxrt::assertTrue(thread, oxrt::Place::current(), result == result, "result is NaN (result = \001, k = \001)", result, k);
         if (state.weights.contains(k))
 #line 33 "shader.py"
             state.weights[k] = 0.0f;
@@ -64,18 +67,32 @@ void raygen_checked(OxrtThread& thread) {
 #line 42 "shader.py"
         state.weights[i.x % 4u] = 1.0f;
     Radiance ray = Radiance{oxrt::checked(thread).load(params.values, i.y, i.x)};
-    oxrt::trace<RadiancePrograms>(thread, params.scene, ray.color, oxrt::float3(0.0f, 0.0f, 1.0f), 0.0f, __builtin_inff(), 0.0f, 255u,
+    oxrt::float3 value_2 = ray.color;
+#line 44 "shader.py"
+    oxrt::assertTrue(thread, oxrt::Place::current(), value_2 == value_2,
+            "origin of trace is NaN (ray.color.x = \001, ray.color.y = \001, ray.color.z = \001)", ray.color.x, ray.color.y, ray.color.z);
+#line 44 "shader.py"
+    oxrt::trace<RadiancePrograms>(thread, params.scene, value_2, oxrt::float3(0.0f, 0.0f, 1.0f), 0.0f, __builtin_inff(), 0.0f, 255u,
             oxrt::KnownFlags<0>(), 0u, 1u, 0u, ray);
 #line 45 "shader.py"
-    oxrt::assertTrue(thread, ray.color.x >= 0.0f, "radiance is not negative");
+    oxrt::assertTrue(thread, oxrt::Place::current(), ray.color.x >= 0.0f, "radiance is not negative (ray.color.x = \001)", ray.color.x);
     oxrt::print(thread, ", ", "\n", "pixel", i.x, i.y, ray.color);
     oxrt::float3 value = ray.color;
 #line 47 "shader.py"
+    oxrt::assertTrue(thread, oxrt::Place::current(), value == value,
+            "value is NaN (ray.color.x = \001, ray.color.y = \001, ray.color.z = \001)", ray.color.x, ray.color.y, ray.color.z);
+#line 47 "shader.py"
     float result = total(thread, state, 3);
+#line 47 "shader.py"
+    oxrt::float3 value_3 = value * result;
+#line 47 "shader.py"
+    oxrt::assertTrue(thread, oxrt::Place::current(), value_3 == value_3,
+            "an element of params.values is NaN (value.x = \001, value.y = \001, value.z = \001, result = \001)", value.x, value.y, value.z,
+            result);
 #line 47 "shader.py"
     if (oxrt::checked(thread).contains(params.values, i.y, i.x))
 #line 47 "shader.py"
-        params.values.at(i.y, i.x) = value * result;
+        params.values.at(i.y, i.x) = value_3;
     if (oxrt::checked(thread).contains(params.values, 0, 0))
 #line 48 "shader.py"
         params.values.at(0, 0).x = 1.0f;
@@ -86,7 +103,7 @@ void closesthit_white(Radiance& ray) {
     ray.color = oxrt::float3(1.0f);
 }
 
-#line 90 "pipeline.cpp"
+#line 107 "pipeline.cpp"
 void RadiancePrograms::closestHit(oxrt::Ray& trace, Payload& payload, const OxrtRecordHeader& record) {
     switch (record.programs[oxrt::SLOT_CLOSESTHIT]) {
         case number::closesthit_white: closesthit_white(payload); break;

@@ -2,7 +2,8 @@
    closesthit programs: shader.py:52
    print: shader.py:46
    loops that poll for cancellation: shader.py:31
-   assertions: shader.py:45
+   assertions: shader.py:44
+   NaN traps: asked for by the pipeline's options
    array bounds checks: shader.py:43
    validation: asked for by the pipeline's options
 */
@@ -89,6 +90,8 @@ Wide<float> total_lanes([[maybe_unused]] Lanes& thread, [[maybe_unused]] Mask ma
             break;
 #line 32 "shader.py"
         result_ = result_ + oxrt::loadItem<LANES>(state.weights, k);
+#line 32 "shader.py"
+        oxrt::assertTrue(thread, oxrt::Place::current(), mask, result_ == result_, "result is NaN (result = \001, k = \001)", result_, k);
         oxrt::assign(mask, state.weights[k], 0.0f);
     }
 #line 34 "shader.py"
@@ -104,18 +107,34 @@ void raygen_checked_lanes([[maybe_unused]] Lanes& thread, [[maybe_unused]] Mask 
     Wide<State> state = oxrt::spread<16>(State{oxrt::FixedArray<float, 4>{}});
     oxrt::eachItem(mask, state.weights, i.x % 4u, [&, value = Wide<float>(1.0f)](auto& item, Mask own) { oxrt::assign(own, item, value); });
     Wide<Radiance> ray = Wide<Radiance>{oxrt::checked(thread, mask).load(params.values, i.y, i.x)};
-    oxrt::trace<RadianceProgramsLanes>(thread, mask, params.scene, ray.color, oxrt::float3(0.0f, 0.0f, 1.0f), 0.0f, __builtin_inff(), 0.0f,
+    Wide<oxrt::float3> value_2 = ray.color;
+#line 44 "shader.py"
+    oxrt::assertTrue(thread, oxrt::Place::current(), mask, value_2 == value_2,
+            "origin of trace is NaN (ray.color.x = \001, ray.color.y = \001, ray.color.z = \001)", ray.color.x, ray.color.y, ray.color.z);
+#line 44 "shader.py"
+    oxrt::trace<RadianceProgramsLanes>(thread, mask, params.scene, value_2, oxrt::float3(0.0f, 0.0f, 1.0f), 0.0f, __builtin_inff(), 0.0f,
             255u, oxrt::KnownFlags<0>(), 0u, 1u, 0u, ray);
 #line 45 "shader.py"
-    oxrt::assertTrue(thread, mask, ray.color.x >= 0.0f, "radiance is not negative");
+    oxrt::assertTrue(thread, oxrt::Place::current(), mask, ray.color.x >= 0.0f, "radiance is not negative (ray.color.x = \001)",
+            ray.color.x);
+#line 46 "shader.py"
     oxrt::eachLane(mask, [&](int lane) { oxrt::print(thread.atLane(lane), ", ", "\n", "pixel", oxrt::inLane(i.x, lane), oxrt::inLane(i.y,
             lane), oxrt::inLane(ray.color, lane)); });
 #line 47 "shader.py"
     Wide<oxrt::float3> value = ray.color;
 #line 47 "shader.py"
+    oxrt::assertTrue(thread, oxrt::Place::current(), mask, value == value,
+            "value is NaN (ray.color.x = \001, ray.color.y = \001, ray.color.z = \001)", ray.color.x, ray.color.y, ray.color.z);
+#line 47 "shader.py"
     Wide<float> result_ = total_lanes(thread, mask, state, 3);
 #line 47 "shader.py"
-    oxrt::checked(thread, mask).store(value * result_, params.values, i.y, i.x);
+    Wide<oxrt::float3> value_3 = value * result_;
+#line 47 "shader.py"
+    oxrt::assertTrue(thread, oxrt::Place::current(), mask, value_3 == value_3,
+            "an element of params.values is NaN (value.x = \001, value.y = \001, value.z = \001, result = \001)", value.x, value.y, value.z,
+            result_);
+#line 47 "shader.py"
+    oxrt::checked(thread, mask).store(value_3, params.values, i.y, i.x);
     oxrt::eachElement<LANES>(oxrt::checked(thread, mask).inside(params.values, 0, 0), [&, value = Wide<float>(1.0f)](auto& element,
             int lane) { oxrt::extractLane(element.x, value, lane); }, params.values, 0, 0);
 }
@@ -124,7 +143,7 @@ void closesthit_white_lanes([[maybe_unused]] Lanes& thread, [[maybe_unused]] Mas
     oxrt::assign(mask, ray.color, oxrt::float3(1.0f));
 }
 
-#line 128 "pipeline.cpp"
+#line 147 "pipeline.cpp"
 void RadianceProgramsLanes::closestHit(Rays& trace, Mask mask, Payload& payload) {
     const Wide<int32_t> program = oxrt::recordPrograms(trace.records, mask, oxrt::SLOT_CLOSESTHIT);
     if (const Mask own = mask & (program == int32_t(number::closesthit_white)); oxrt::any(own))

@@ -3,7 +3,7 @@
 import optixc as ox
 from optixc import float3
 
-OPTIONS = {"debug": True, "validation": True}
+OPTIONS = {"debug": True, "trap_nan": True, "validation": True}
 
 
 @ox.struct
