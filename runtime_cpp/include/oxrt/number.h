@@ -42,15 +42,34 @@ template <class To, class From> struct ScalarConverter {
     static OXRT_INLINE constexpr To convert(From value) { return To(value); }
 };
 
+#if defined(__x86_64__)
+using MachineFloats = float __attribute__((vector_size(16)));
+using MachineDoubles = double __attribute__((vector_size(16)));
+/* Truncates; the lowest number for what does not fit and for NaN. */
+OXRT_INLINE int64_t truncateInMachine(float value) { return __builtin_ia32_cvttss2si64(MachineFloats{value}); }
+OXRT_INLINE int64_t truncateInMachine(double value) { return __builtin_ia32_cvttsd2si64(MachineDoubles{value}); }
+#endif
+
 /* Truncates, saturates, and gives 0 for NaN. */
 template <class To, class From> requires(isFloating<From> && !isFloating<To> && !isSame<To, bool>) struct ScalarConverter<To, From> {
     static OXRT_INLINE constexpr To convert(From value) {
+#if defined(__x86_64__)
+        if constexpr (sizeof(To) < 8)
+            if (!__builtin_is_constant_evaluated()) {
+                const int64_t truncated = truncateInMachine(value);
+                return __builtin_expect(truncated == int64_t(To(truncated)), 1) ? To(truncated) : saturate(value);
+            }
+#endif
+        return saturate(value);
+    }
+
+private:
+    static OXRT_INLINE constexpr To saturate(From value) {
         constexpr int valueBits = int(sizeof(To)) * 8 - (isSigned<To> ? 1 : 0);
         constexpr From limit = From(uint64_t(1) << (valueBits - 1)) * From(2);
         constexpr To highest = To((uint64_t(1) << (valueBits - 1)) - 1 + (uint64_t(1) << (valueBits - 1)));
         constexpr From lowest = isSigned<To> ? -limit : From(0);
         constexpr From below = limit - limit * (isSame<From, float> ? From(5.9604645e-8) : From(1.1102230246251565e-16));
-        /* step by step, without branches: they would cost more than the steps, and keep the compiler from vectorising what is around */
         const From raised = value > lowest ? value : lowest;
         const To truncated = To(raised < limit ? raised : below);
         const To saturated = value >= limit ? highest : truncated;
