@@ -11,10 +11,13 @@ from pathlib import Path
 import pytest
 
 import optixc as ox
+from optixc import driver, toolchain
 from optixc.frontend.compile import compile_file
 from optixc.ir.intrinsic_rows import ROWS
-from optixc.ir.intrinsics import Generic, Intrinsic
+from optixc.ir.intrinsics import Effect, Generic, Intrinsic
 from optixc.ir.programs import ProgramKind
+from optixc.ir.types import TRAVERSABLE, VOID, Matrix, Tuple
+from optixc.options import CompileOptions
 
 LETTERS = {"RG": "raygen", "IS": "intersection", "AH": "anyhit", "CH": "closesthit", "MS": "miss", "EX": "exception",
            "DC": "direct_callable", "CC": "continuation_callable"}
@@ -116,3 +119,65 @@ def test_T027_T028_who_may_call(letters: str, tmp_path: Path) -> None:
 def test_T028_every_function_of_the_matrix_is_there() -> None:
     # The guide gives every form of the transform list; nothing of the matrix is missing here.
     assert sorted(ALLOWED.keys() - DEVICE_ROWS.keys()) == []
+
+
+def statuses() -> dict[str, bool]:
+    """What the page for OptiX users says about each device function: whether it is there."""
+    page = (Path(__file__).parents[2] / "docs" / "coming_from_optix.md").read_text()
+    lines = [line.split(" | ") for line in page.splitlines() if line.startswith("| optix") and line.count(" | ") == 4]
+    return {name.removeprefix("| ").split(" to ")[0]: there == "yes" for name, _, _, there, _ in lines}
+
+
+def shader_with(names: list[str]) -> str:
+    """Each function in a program of a kind that may call it; results are printed, so that the C++ compiler sees every one."""
+    parts = [HEAD]
+    for letter, kind in LETTERS.items():
+        mine = [name for name in names if next(one for one in LETTERS if one in ALLOWED[name]) == letter]
+        # what must come first, and what nothing may follow
+        mine.sort(key=lambda name: (name != "optixSetPayloadTypes", DEVICE_ROWS[name].effect is Effect.ENDS_PROGRAM))
+        lines = [f"    {line}" for number, name in enumerate(mine) for line in use(DEVICE_ROWS[name], f"v{number}")]
+        result, tail = (" -> float", ["    return 1.0"]) if kind.endswith("callable") else ("", [])
+        parts.append("\n".join(["@ox.program", f"def __{kind}__p(){result}:", *(lines or ["    pass"]), *tail]))
+    return "\n\n\n".join(parts) + "\n"
+
+
+def use(row: Intrinsic, name: str) -> list[str]:
+    """Statements that call the row and need its result."""
+    if row.effect in (Effect.ENDS_PROGRAM, Effect.ENDS_LAUNCH_INDEX):
+        return ["if ox.get_launch_index().x > 3:", f"    {call(row)}"]
+    if row.result == VOID:
+        return [call(row)]
+    shown = {Matrix: "{0}[0]", Generic: "{0}.a"}.get(type(row.result), "{0}")
+    if isinstance(row.result, Tuple):
+        item, type_ = next((number, item) for number, item in enumerate(row.result.items) if item != TRAVERSABLE)
+        shown = f"{{0}}[{item}]" + "[0]" * isinstance(type_, Matrix)
+    if row.result == TRAVERSABLE:
+        shown = "ox.get_instance_id_from_handle({0})"
+    return [f"{name} = {call(row)}", f"print({shown.format(name)})"]
+
+
+def compiles(folder: Path, names: list[str], simd: int) -> str:
+    """What the C++ compiler has to say about a pipeline with all of these functions, unoptimised."""
+    path = folder / "shader.py"
+    path.write_text(shader_with(names))
+    options = CompileOptions(simd=simd, optimization=0, max_trace_depth=2,
+                             pipeline=ox.PipelineCompileOptions(uses_motion_blur=True, exception_flags=ox.ExceptionFlags(7)))
+    module = compile_file(str(path)).module
+    emitted = driver.emit([module], [program.name for program in module.programs], options)
+    try:
+        toolchain.compile_shared(emitted.text, folder / "pipeline.so", toolchain.find_compiler(), driver.recipe(options))
+    except ox.ToolchainError as error:
+        return str(error)
+    return ""
+
+
+@pytest.mark.parametrize("simd", [1, 8, 16])
+def test_functions_that_are_there_compile(tmp_path: Path, simd: int) -> None:
+    names = [name for name in DEVICE_ROWS if statuses().get(name, re.search(r"_\d+$", name) is not None)]
+    assert len(names) > 200
+    assert compiles(tmp_path, names, simd) == ""
+
+
+@pytest.mark.parametrize("name", [name for name, there in statuses().items() if not there and name in DEVICE_ROWS] or [None])
+def test_functions_that_are_missing_do_not(tmp_path: Path, name: str | None) -> None:
+    assert name is None or compiles(tmp_path, [name], 1) != "", f"{name} is there: run docs/make_coming_from_optix.py"

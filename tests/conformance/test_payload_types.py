@@ -126,3 +126,23 @@ def test_T063_payload_types_are_not_conditional(tmp_path: Path) -> None:
         create(tmp_path, text.format("1"))
     with pytest.raises(ox.CompileError, match="takes a constant"):
         create(tmp_path, "@ox.program\ndef __miss__m():\n    ox.set_payload_types(ox.get_payload_0())\n")
+
+
+@pytest.mark.parametrize("simd", [1, 8, 16])
+def test_payload_types_in_a_pipeline(tmp_path: Path, simd: int) -> None:
+    text = ("@ox.struct\nclass Params:\n    out: ox.Array[uint32]\n\n\nparams = ox.launch_params(Params)\n\n\n"
+            "@ox.program\ndef __raygen__r():\n    (w,) = ox.trace(ox.Traversable(0), float3(0.0), float3(1.0), payload=(uint32(5),))\n"
+            "    params.out[ox.get_launch_index().x] = w\n\n\n"
+            "@ox.program\ndef __miss__m():\n    ox.set_payload_types(ox.PayloadTypeID.ID_0 | ox.PayloadTypeID.ID_1)\n"
+            "    ox.set_payload_0(ox.get_payload_0() + 37)\n")
+    module, context = create(tmp_path, text), ox.DeviceContext()
+    raygen, miss = context.program_group_create(raygen=module["__raygen__r"]), context.program_group_create(miss=module["__miss__m"])
+    pipeline = context.pipeline_create([raygen, miss], simd=simd, options=ox.PipelineCompileOptions(num_payload_values=1))
+
+    @ox.struct
+    class Params:
+        out: ox.Array[ox.uint32]
+
+    out = np.zeros(20, np.uint32)
+    pipeline.launch(Params(out=out), ox.ShaderBindingTable(raygen=raygen.record(), miss=[miss.record()]), 20)
+    assert out.tolist() == [42] * 20
