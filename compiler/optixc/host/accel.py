@@ -13,7 +13,7 @@ from optixc.errors import InvalidValueError
 from optixc.host import library
 from optixc.host.context import Context
 from optixc.host.inputs import BuildInput, MotionOptions, pack_inputs, take_handle
-from optixc.host.sbt_reach import Child, Geometry, below, parts_of
+from optixc.host.sbt_reach import Parts, below, parts_of
 
 
 class TraversableHandle(int):
@@ -136,7 +136,7 @@ class Accel:
             return self._copied(made[0], self._children, self.parts)
         return self._copied(made[0], tuple(children), below(self.parts, children))
 
-    def _copied(self, accel: Any, children: tuple[Any, ...], parts: tuple[Geometry | Child, ...]) -> Accel:
+    def _copied(self, accel: Any, children: tuple[Any, ...], parts: Parts) -> Accel:
         """A Python object for a copy that the runtime made."""
         made: Accel = object.__new__(Accel)
         made._accel, made._context, made._build_flags, made._motion = accel, self._context, self._build_flags, self._motion

@@ -241,7 +241,7 @@ class BuildInputCustomPrimitives(Records, BuildInput):
 class BuildInputInstances(BuildInput):
     """Instances: a list of `Instance`, or a list of traversables with arrays of their members for many at once.
 
-    The members are an array of n or one value for all; `transforms` is float32 (n, 3, 4).
+    The members are an array of n or one value for all; `transforms` is float32 (n, 3, 4). A uint64 array of handles is the quickest list.
     """
 
     instances: Sequence[Any]
@@ -263,7 +263,11 @@ class BuildInputInstances(BuildInput):
     )
 
     def children(self) -> tuple[Any, ...]:
-        return tuple(one.traversable if isinstance(one, Instance) else one for one in self.instances)
+        if isinstance(self.instances, np.ndarray) and self.instances.dtype.kind in "iu":
+            return ()  # numbers keep nothing alive; the runtime does
+        # Most scenes have many instances of few children
+        different = {id(one): one for one in self.instances}.values()
+        return tuple(one.traversable if isinstance(one, Instance) else one for one in different)
 
     def fill(self, target: Any, kept: list[Any]) -> None:
         if isinstance(self.instances, Instance) or not isinstance(self.instances, Sequence | np.ndarray):
@@ -301,8 +305,7 @@ class BuildInputInstances(BuildInput):
 
     def _fill_from_arrays(self, table: np.ndarray[Any, Any]) -> None:
         count = len(table)
-        for number, one in enumerate(self.instances):
-            table[number]["traversable"] = take_handle(one, f"instance {number}")
+        table["traversable"] = take_handles(self.instances)
         if self.transforms is None:
             table["transform"] = _IDENTITY
         else:
@@ -329,6 +332,20 @@ def take_handle(value: Any, where: str) -> int:
     if isinstance(handle, bool) or not isinstance(handle, int | np.integer) or not 0 <= handle < 1 << 64:
         raise InvalidValueError(f"{where} takes an accel or a traversable handle, not {type(value).__name__}")
     return int(handle)
+
+
+def take_handles(values: Sequence[Any]) -> np.ndarray[Any, Any]:
+    """The handles of many traversables as uint64; each object is looked at once, however often it stands in the list."""
+    if isinstance(values, np.ndarray) and values.dtype.kind in "iu" and values.ndim == 1:
+        if values.size and int(values.min()) < 0:
+            raise InvalidValueError(f"instance {int(values.argmin())} takes an accel or a traversable handle, not {int(values.min())}")
+        return values.astype(np.uint64)
+    objects = list(values)  # alive while their ids are compared
+    known: dict[int, int] = {}
+    for number, one in enumerate(objects):
+        if id(one) not in known:
+            known[id(one)] = take_handle(one, f"instance {number}")
+    return np.fromiter(map(known.__getitem__, map(id, objects)), np.uint64, len(objects))
 
 
 def take_transform(value: Any, where: str) -> np.ndarray[Any, Any]:

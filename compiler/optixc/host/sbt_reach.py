@@ -43,23 +43,47 @@ class Place:
         return self.offset + self.gas_index * (sbt_stride & 15) + (sbt_offset & 15 | sbt_stride >> 4 & 15)
 
 
-def parts_of(inputs: Sequence[Any]) -> tuple[Geometry | Child, ...]:
+class Children:
+    """The instances of an IAS that were given as arrays. Each is made when it is asked for, since there may be millions."""
+
+    def __init__(self, traversables: Any, sbt_offsets: np.ndarray[Any, Any]) -> None:
+        self._traversables = traversables
+        self.sbt_offsets = sbt_offsets
+
+    def __len__(self) -> int:
+        return len(self._traversables)
+
+    def __getitem__(self, number: int) -> Child:
+        return Child(self._traversables[number], int(self.sbt_offsets[number]))
+
+    def __iter__(self) -> Iterator[Child]:
+        return (self[number] for number in range(len(self)))
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, Children) and list(self) == list(other)
+
+    __hash__ = None  # type: ignore[assignment]
+
+
+Parts = tuple[Geometry | Child, ...] | Children
+
+
+def parts_of(inputs: Sequence[Any]) -> Parts:
     """What an accel is made of, from its build inputs."""
-    parts: list[Geometry | Child] = []
-    for one in inputs:
-        if hasattr(one, "num_sbt_records"):
-            parts.append(Geometry(_kind(one), int(one.num_sbt_records)))
-            continue
-        given = getattr(one, "sbt_offsets", None)
-        offsets = np.broadcast_to(0 if given is None else np.asarray(given).reshape(-1), len(one.instances))
-        for instance, offset in zip(one.instances, offsets.tolist(), strict=True):
-            is_instance = hasattr(instance, "traversable")
-            parts.append(Child(instance.traversable, int(instance.sbt_offset)) if is_instance else Child(instance, offset))
-    return tuple(parts)
+    if all(hasattr(one, "num_sbt_records") for one in inputs):
+        return tuple(Geometry(_kind(one), int(one.num_sbt_records)) for one in inputs)
+    (given,) = inputs
+    if len(given.instances) and hasattr(given.instances[0], "traversable"):
+        return tuple(Child(one.traversable, int(one.sbt_offset)) for one in given.instances)
+    offsets = np.array(0 if given.sbt_offsets is None else given.sbt_offsets).reshape(-1)
+    traversables = given.instances.copy() if isinstance(given.instances, np.ndarray) else tuple(given.instances)
+    return Children(traversables, np.broadcast_to(offsets, len(traversables)))
 
 
-def below(parts: Sequence[Geometry | Child], traversables: Sequence[Any]) -> tuple[Geometry | Child, ...]:
+def below(parts: Parts, traversables: Sequence[Any]) -> Parts:
     """The parts of an IAS with other traversables, one for each instance."""
+    if isinstance(parts, Children):
+        return Children(tuple(traversables), parts.sbt_offsets)
     return tuple(Child(one, part.sbt_offset) if isinstance(part, Child) else part for part, one in zip(parts, traversables, strict=True))
 
 
