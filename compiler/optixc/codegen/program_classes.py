@@ -134,7 +134,7 @@ def _words_used(pipeline: Pipeline, program: Function) -> int:
         names = [e.name for e in expressions(function.body) if isinstance(e, IntrinsicCall)]
         names += [s.name for s in statements(function.body) if isinstance(s, CallIntrinsic)]
         for name in names:
-            if name.startswith(_WORD_PREFIXES) and name != "set_payload_types":
+            if name.startswith(_WORD_PREFIXES):
                 highest = max(highest, int(name.rsplit("_", 1)[1]) + 1)
     return highest
 

@@ -70,7 +70,7 @@ def _numbered(pipeline: Pipeline, prefixes: tuple[str, ...]) -> Iterator[tuple[i
         found = [(e.name, e.span) for e in expressions(function.body) if isinstance(e, IntrinsicCall)]
         found += [(s.name, s.span) for s in statements(function.body) if isinstance(s, CallIntrinsic)]
         for name, span in found:
-            if name.startswith(prefixes) and name != "set_payload_types":
+            if name.startswith(prefixes):
                 yield int(name.rsplit("_", 1)[1]) + 1, f"{name}()", span
 
 
