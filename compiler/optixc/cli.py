@@ -74,7 +74,9 @@ def _parser() -> argparse.ArgumentParser:
         "-I", dest="include_dirs", action="append", default=[], type=Path, metavar="DIR", help="look for helper files here too"
     )
     parser.add_argument("--simd", choices=("auto", "1", "8", "16"), default="auto", help="lanes of a packet (default: auto)")
-    parser.add_argument("--target", choices=TARGETS, default="native", help="instruction set (default: this machine's)")
+    parser.add_argument(
+        "--target", choices=TARGETS, default="native", help="instruction set (default: this machine's); x86-64 takes kernels for each level"
+    )
     parser.add_argument("--math", choices=("precise", "fast"), default="precise")
     parser.add_argument(
         "--max-trace-depth", type=int, default=1, metavar="N", help=f"nesting of traces, 0 to {MAX_TRACE_DEPTH} (default: 1)"
@@ -117,14 +119,15 @@ def _compile(chosen: argparse.Namespace) -> int:
 
 def _emit(chosen: argparse.Namespace, unit: driver.Unit, names: list[str], options: CompileOptions, store: Cache) -> int:
     result = unit.result
+    if chosen.print_after is not None and chosen.print_after not in driver.pass_names():
+        raise InvalidValueError(f"--print-after takes one of {', '.join(driver.pass_names())}, not {chosen.print_after!r}")
+    options = driver.variants(options)[-1]
     if chosen.emit == "types":
         print(print_types(result.checked))
         return 0
     if chosen.emit == "ir" and chosen.print_after is None:
         print(print_module(result.module))
         return 0
-    if chosen.print_after is not None and chosen.print_after not in driver.pass_names():
-        raise InvalidValueError(f"--print-after takes one of {', '.join(driver.pass_names())}, not {chosen.print_after!r}")
     emitted = driver.emit([result.module], names, options, lambda name, pipeline: _print_pass(chosen.print_after, name, pipeline))
     if chosen.emit == "asm":
         print(toolchain.compile_assembly(emitted.text, toolchain.find_compiler(store.memory), driver.recipe(options)))
@@ -145,7 +148,7 @@ def _print_pass(wanted: str | None, name: str, pipeline: nodes.Pipeline) -> None
 def _write(chosen: argparse.Namespace, unit: driver.Unit, names: list[str], options: CompileOptions, store: Cache) -> None:
     stem: Path = chosen.output or Path(chosen.shader.stem)
     built = driver.build([unit], names, options, store)
-    emitted = driver.emit([unit.result.module], names, options)
+    emitted = driver.emit([unit.result.module], names, driver.variants(options)[-1])
     outputs = [stem.with_name(stem.name + suffix) for suffix in (".so", ".h", ".json")]
     try:
         stem.parent.mkdir(parents=True, exist_ok=True)

@@ -10,7 +10,7 @@ import os
 import time
 from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cache
 from pathlib import Path
 from typing import Any
@@ -37,7 +37,7 @@ from optixc.installation import include_folder
 from optixc.ir import layout, nodes
 from optixc.ir import types as t
 from optixc.ir.walk import expressions, statements
-from optixc.options import BoundValue, CompileOptions
+from optixc.options import EVERY_X86, BoundValue, CompileOptions
 from optixc.passes.callables import signatures_called
 from optixc.passes.features import Features, features
 from optixc.passes.pipeline import LinkError, link
@@ -134,14 +134,20 @@ def build(units: Sequence[Unit], names: Sequence[str], options: CompileOptions, 
         if note is not None and entry is not None:
             report = {**note["report"], "compile_seconds": time.perf_counter() - began, "cache_hit": True}
             return Built(entry.library, note["params"], report, note["programs"])
-    emitted = emit([unit.result.module for unit in units], names, options)
-    key = digest("library", emitted.text, *plan.flags(), compiler.identity, *_surroundings(plan))
+    chosen = variants(options)
+    written = [(emit([unit.result.module for unit in units], names, one), recipe(one)) for one in chosen]
+    emitted = written[-1][0]
+    kernels = [part for one, how in written for part in (one.text, *how.flags())]
+    key = digest("library", *kernels, compiler.identity, *_surroundings(plan))
     entry = store.find(key)
     if entry is None:
         manifest: Json = {}
 
         def produce(output: Path) -> None:
-            manifest["frames"] = toolchain.compile_shared(emitted.text, output, compiler, plan)
+            if len(written) == 1:
+                manifest["frames"] = toolchain.compile_shared(emitted.text, output, compiler, plan)
+            else:
+                manifest["frames"] = toolchain.compile_variants([(one.text, how) for one, how in written], output, compiler)
 
         entry = store.store(key, manifest, produce)
     params = _describe_params(emitted.pipeline.params)
@@ -192,6 +198,15 @@ def pipeline_options(options: CompileOptions, params: t.Struct | None) -> nodes.
     )
 
 
+def variants(options: CompileOptions) -> tuple[CompileOptions, ...]:
+    """The options of each set of kernels in one shared object: several only for EVERY_X86, the least instruction set first."""
+    if options.target != EVERY_X86 or options.debug:
+        return (options,)
+    if options.simd != "auto":
+        raise NotSupportedError(f"target {EVERY_X86} has kernels for each width; leave out simd={options.simd}, or name one level")
+    return tuple(replace(options, target=level, simd=width) for level, width in toolchain.LANES_OF_TARGETS.items())
+
+
 def lanes(options: CompileOptions) -> int:
     """Lanes to compile for: what was asked, or the widest that the processor and the emitter have. Debug builds are scalar."""
     if options.simd == "auto":
@@ -199,6 +214,9 @@ def lanes(options: CompileOptions) -> int:
         return max((width for width in (1, *SPMD_LANES) if width <= widest), default=1)
     if options.simd != 1 and options.simd not in SPMD_LANES:
         raise NotSupportedError(f"simd={options.simd} is not available; use 1 or auto")
+    if options.simd > toolchain.processor_lanes(options.target):
+        what = "this processor has" if options.target == "native" else f"{options.target} has"
+        raise NotSupportedError(f"simd={options.simd} needs more than {what}; the most is {toolchain.processor_lanes(options.target)}")
     return int(options.simd)
 
 
@@ -345,7 +363,8 @@ def recipe(options: CompileOptions) -> toolchain.Build:
 
 def _surroundings(plan: toolchain.Build) -> tuple[str, ...]:
     """What besides program, options and compiler decides the machine code."""
-    return (_compiler_stamp(), _headers_digest(plan.include), toolchain.processor() if plan.target == "native" else "")
+    machine = f"{toolchain.processor()}{toolchain.native_target()}" if plan.target == "native" else ""
+    return (_compiler_stamp(), _headers_digest(plan.include), machine)
 
 
 def _file_key(path: Path, include_dirs: Sequence[Path]) -> str:

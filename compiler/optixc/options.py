@@ -15,7 +15,9 @@ from optixc.errors import InvalidValueError
 
 Simd = Literal["auto"] | int
 MAX_TRACE_DEPTH = 31
-TARGETS = ("native", "x86-64-v3", "x86-64-v4")
+TARGETS = ("native", "x86-64", "x86-64-v3", "x86-64-v4")
+EVERY_X86 = "x86-64"
+"""The target whose shared object holds kernels for each level of x86-64, to be chosen where it is loaded."""
 BoundValue = bool | int | float | tuple[bool | int | float, ...]
 
 

@@ -11,19 +11,21 @@ import re
 import shutil
 import subprocess
 import tempfile
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 
 from optixc.enums_program import Result
-from optixc.errors import OptixError
+from optixc.errors import InvalidValueError, OptixError
 from optixc.signed_json import signed, unsigned
 from optixc.stack_usage import read_frames
 
 MIN_CLANG = 16
 MIN_GCC = 12
 _CANDIDATES = ("clang++", *(f"clang++-{n}" for n in range(21, MIN_CLANG - 1, -1)), "g++", *(f"g++-{n}" for n in range(15, MIN_GCC - 1, -1)))
+LANES_OF_TARGETS = {"x86-64": 1, "x86-64-v3": 8, "x86-64-v4": 16}
+"""The levels of x86-64, each with the widest packet that it takes, the least first."""
 _BASE_FLAGS = (
     "-std=c++20",
     "-ffp-contract=off",
@@ -37,6 +39,9 @@ _BASE_FLAGS = (
 )
 _FAST_MATH_FLAGS = ("-ffp-contract=fast", "-DOXRT_FAST_MATH")
 _LOG_LINES = 30
+_SYMBOL = "oxrt_pipeline_v1"
+_QUIET = ("-w",)
+"""Unknown pragmas and attributes of one compiler must not speak to users of the other; that generated code is clean is tested."""
 
 
 class ToolchainError(OptixError):
@@ -82,7 +87,7 @@ class Build:
             *(_FAST_MATH_FLAGS if self.fast_math else ()),
             f"-O{level}",
             *(("-g",) if self.debug else ()),
-            f"-march={self.target}",
+            f"-march={native_target() if self.target == 'native' else self.target}",
             f"-I{self.include}",
         )
 
@@ -150,12 +155,42 @@ def compile_shared(text: str, output: Path, compiler: Compiler, build: Build) ->
         source = output.with_suffix(".cpp") if build.debug else Path(folder) / "pipeline.cpp"
         source.write_text(text)
         made = Path(folder) / "pipeline.so"
-        # Unknown pragmas and attributes of one compiler must not speak to users of the other, so warnings are off here;
-        # that generated code is clean under -Wall -Wextra is tested.
-        _run(compiler, [*build.flags(), "-w", "-fstack-usage", "-shared", str(source), "-o", str(made), "-lm"])
+        _run(compiler, [*build.flags(), *_QUIET, "-fstack-usage", "-shared", str(source), "-o", str(made), "-lm"])
         frames = read_frames(made.parent)
         os.replace(made, output)
         return frames
+
+
+def compile_variants(variants: Sequence[tuple[str, Build]], output: Path, compiler: Compiler) -> dict[str, int]:
+    """As `compile_shared`, of several texts for one instruction set each, the least one first: the loader takes the last that runs."""
+    with tempfile.TemporaryDirectory(prefix="optixc-", dir=output.parent) as folder:
+        objects = []
+        for number, (text, build) in enumerate(variants):
+            source = Path(folder) / f"variant_{number}.cpp"
+            source.write_text(text)
+            objects.append(str(source.with_suffix(".o")))
+            names = [f"-D{_SYMBOL}=oxrt_variant_{number}", f"-DOXRT_ISA=isa_{re.sub('[^a-z0-9]', '_', build.target)}"]
+            _run(compiler, [*build.flags(), *_QUIET, *names, "-fstack-usage", "-c", str(source), "-o", objects[-1]])
+        joined, exports, made = (Path(folder) / name for name in ("pipeline.cpp", "exports.map", "pipeline.so"))
+        joined.write_text(_joined(len(variants)))
+        exports.write_text(f"{{ global: {_SYMBOL}; local: *; }};\n")
+        link = ["-shared", f"-Wl,--version-script={exports}", str(joined), *objects, "-o", str(made), "-lm"]
+        _run(compiler, [*variants[0][1].flags(), *_QUIET, *link])
+        frames = read_frames(made.parent)
+        os.replace(made, output)
+        return frames
+
+
+def _joined(count: int) -> str:
+    """The one exported symbol for kernels of several object files."""
+    names = [f"oxrt_variant_{number}" for number in range(count)]
+    first = names[0]
+    return f"""#include <oxrt/pipeline.h>
+extern "C" const OxrtPipelineBinary {", ".join(names)};
+static const OxrtPipelineVariant variants[] = {{{", ".join(f"{name}.variants[0]" for name in names)}}};
+extern "C" __attribute__((visibility("default"))) const OxrtPipelineBinary {_SYMBOL} = {{
+    {first}.abi, {count}, variants, {first}.paramsSize, {first}.maxTraceDepth, {first}.version}};
+"""
 
 
 def compile_assembly(text: str, compiler: Compiler, build: Build) -> str:
@@ -163,7 +198,7 @@ def compile_assembly(text: str, compiler: Compiler, build: Build) -> str:
     with tempfile.TemporaryDirectory(prefix="optixc-") as folder:
         source, made = Path(folder) / "pipeline.cpp", Path(folder) / "pipeline.s"
         source.write_text(text)
-        _run(compiler, [*build.flags(), "-w", "-S", "-masm=intel", str(source), "-o", str(made)])
+        _run(compiler, [*build.flags(), *_QUIET, "-S", "-masm=intel", str(source), "-o", str(made)])
         return made.read_text()
 
 
@@ -180,12 +215,19 @@ def processor() -> str:
     return "\n".join(line for line in block.splitlines() if line.startswith(wanted)) or os.uname().machine
 
 
+def native_target() -> str:
+    """What "native" stands for: this machine's processor, or the lesser one that OXRT_MAX_ISA asks to work as."""
+    wanted = os.environ.get("OXRT_MAX_ISA", "")
+    if wanted and wanted not in LANES_OF_TARGETS:
+        raise InvalidValueError(f"OXRT_MAX_ISA is {wanted!r}; set it to {', '.join(LANES_OF_TARGETS)}, or unset it")
+    return wanted or "native"
+
+
 def processor_lanes(target: str = "native") -> int:
     """The widest packet that the target's instruction set takes: 16 (AVX-512), 8 (AVX2) or 1."""
-    if target == "x86-64-v4":
-        return 16
-    if target == "x86-64-v3":
-        return 8
+    target = native_target() if target == "native" else target
+    if target in LANES_OF_TARGETS:
+        return LANES_OF_TARGETS[target]
     words = processor().split()
     if all(word in words for word in ("avx512f", "avx512bw", "avx512dq", "avx512vl")):
         return 16
@@ -194,12 +236,18 @@ def processor_lanes(target: str = "native") -> int:
 
 def _run(compiler: Compiler, arguments: list[str]) -> None:
     try:
-        result = subprocess.run([compiler.command, *arguments], capture_output=True, text=True, errors="replace", check=False)
+        # Compilers fail where TMPDIR names no folder; Python's choice exists.
+        environment = {**os.environ, "TMPDIR": tempfile.gettempdir()}
+        command = [compiler.command, *arguments]
+        result = subprocess.run(command, capture_output=True, text=True, errors="replace", check=False, env=environment)
     except OSError as error:
         raise ToolchainError(f"{compiler.command} cannot be started: {error.strerror}; set OPTIXC_CXX to a working compiler") from error
     if result.returncode != 0:
         lines = result.stderr.strip().splitlines()[:_LOG_LINES]
-        head = f"{compiler} failed with exit code {result.returncode}; this is a bug of optixc unless the disk is full:"
+        if result.returncode < 0:
+            head = f"{compiler} was ended by signal {-result.returncode}; if memory ran out, compile with fewer lanes (simd=1)"
+        else:
+            head = f"{compiler} failed with exit code {result.returncode}; this is a bug of optixc unless the disk is full:"
         raise ToolchainError("\n".join([head, *lines]))
 
 

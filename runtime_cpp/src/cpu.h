@@ -10,8 +10,11 @@
 
 namespace oxrt {
 
-// The best OXRT_ISA_... of this machine and operating system.
+// The bits OXRT_ISA_... of what this machine and operating system run; the variable OXRT_MAX_ISA leaves less.
 std::uint32_t detectIsa();
+
+// What --target calls the level of these bits.
+const char* isaName(std::uint32_t isa);
 
 // Round to nearest, denormals as IEEE has them, exceptions masked; whatever the caller's thread had comes back at the end. The open
 // intervals of built-in primitives need denormals (nextafter(0)).

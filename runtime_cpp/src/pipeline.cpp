@@ -60,10 +60,12 @@ void Pipeline::chooseVariant(const OxrtPipelineBinary& candidate)
              path.c_str(), candidate.abi, static_cast<unsigned>(OXRT_PIPELINE_ABI));
     const std::uint32_t isa = detectIsa();
     for (std::uint32_t i = 0; candidate.variants && i < candidate.variantCount; ++i)
-        if (candidate.variants[i].isa <= isa) variant = &candidate.variants[i];
+        if ((candidate.variants[i].isa & ~isa) == 0) variant = &candidate.variants[i];
     if (!variant)
-        fail(OXRT_ERROR_NOT_SUPPORTED, "the pipeline %s has no variant that this processor can run; compile it with --target native",
-             path.c_str());
+        fail(OXRT_ERROR_NOT_SUPPORTED,
+             "the pipeline %s was compiled for %s, which this processor does not run (it has %s); compile it on this machine, or with "
+             "--target x86-64 for kernels that run on any",
+             path.c_str(), candidate.variantCount ? isaName(candidate.variants[0].isa) : "no processor", isaName(isa));
 
     for (std::uint32_t i = 0; i < variant->programCount; ++i) {
         const OxrtProgram& program = variant->programs[i];

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import shutil
 import subprocess
 import sys
@@ -57,6 +58,18 @@ def test_a_shader_is_a_build_step(tmp_path: Path, generator: str, monkeypatch: p
     helper.write_text(helper.read_text().replace("x * x", "x * x * x"))
     assert "Compiling shader squares.py" in run(tool("cmake"), "--build", build)
     assert run(build / "consumer").split() == ["0", "1", "8", "27", "64"]
+
+
+def test_one_shared_object_for_several_processors(tmp_path: Path) -> None:
+    source, build = tmp_path / "source", tmp_path / "build"
+    shutil.copytree(SOURCE, source)
+    lists = source / "CMakeLists.txt"
+    lists.write_text(lists.read_text().replace("SOURCES squares.py", "SOURCES squares.py OPTIONS --target x86-64"))
+    run(tool("cmake"), "-S", source, "-B", build, f"-Doptixc_DIR={installation.cmake_folder()}")
+    run(tool("cmake"), "--build", build)
+    for level in ("x86-64", "x86-64-v3", "x86-64-v4"):
+        done = subprocess.run([build / "consumer"], env={**os.environ, "OXRT_MAX_ISA": level}, capture_output=True, text=True, check=True)
+        assert done.stdout.split() == ["0", "1", "4", "9", "16"]
 
 
 def test_an_error_in_the_shader_fails_the_build_with_its_place(tmp_path: Path) -> None:

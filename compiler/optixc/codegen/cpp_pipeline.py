@@ -156,7 +156,10 @@ class PipelineFile:
 
     def _variant(self) -> str:
         """The kernels of this file: instruction set, lanes, programs."""
-        return f"{{OXRT_ISA_ANY, 1, programs, {len(self._pipeline.programs)}}}"
+        return f"{{oxrt::BUILT_ISA, {self._lanes()}, programs, {len(self._pipeline.programs)}}}"
+
+    def _lanes(self) -> int:
+        return 1
 
     def _exported_symbol(self) -> None:
         params = self._pipeline.params

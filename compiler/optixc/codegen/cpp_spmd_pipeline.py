@@ -305,10 +305,8 @@ class SpmdFile(PipelineFile):
                     self._writer.line(f"case {self._dispatch.number(program)}: {call}; break;")
                 self._writer.line("default: break;")
 
-    def _variant(self) -> str:
-        lanes = self._pipeline.options.lanes
-        isa = "OXRT_ISA_X86_64_V4" if lanes == 16 else "OXRT_ISA_X86_64_V3"
-        return f"{{{isa}, {lanes}, programs, {len(self._pipeline.programs)}}}"
+    def _lanes(self) -> int:
+        return self._pipeline.options.lanes
 
 
 def _reads_hit(pipeline: Pipeline, program: Function) -> bool:

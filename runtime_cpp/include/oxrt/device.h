@@ -2,6 +2,7 @@
 #ifndef OXRT_DEVICE_H
 #define OXRT_DEVICE_H
 
+#include <oxrt/device_isa.h>
 #include <oxrt/math_geometry.h>
 #include <oxrt/device_memory.h>
 #include <oxrt/device_trace.h>

@@ -13,7 +13,7 @@
 extern "C" {
 #endif
 
-enum { OXRT_PIPELINE_ABI = 3 };
+enum { OXRT_PIPELINE_ABI = 4 };
 
 /* ---- SBT records -------------------------------------------------------------------------------------------------------------- */
 
@@ -233,11 +233,14 @@ typedef struct OxrtProgram {
     void (*run)(OxrtThread* thread, const OxrtTile* tile); /* ray generation: runs every index of the tile; NULL for the others */
 } OxrtProgram;
 
-enum { OXRT_ISA_ANY = 0, OXRT_ISA_X86_64_V3 = 1, OXRT_ISA_X86_64_V4 = 2 };
+/* What a kernel's machine code may use, an OR of bits: the levels of x86-64, and what compilers use beyond them by themselves. */
+enum { OXRT_ISA_ANY = 0, OXRT_ISA_X86_64_V3 = 1, OXRT_ISA_X86_64_V4 = 3, OXRT_ISA_AVX512_VBMI = 4, OXRT_ISA_AVX512_VBMI2 = 8,
+       OXRT_ISA_AVX512_VNNI = 16, OXRT_ISA_AVX512_BITALG = 32, OXRT_ISA_AVX512_VPOPCNTDQ = 64, OXRT_ISA_AVX512_IFMA = 128,
+       OXRT_ISA_GFNI = 256 };
 
-/* The kernels for one instruction set. The runtime takes the last one that the machine can run. */
+/* The kernels for one instruction set. The runtime takes the last one all of whose bits the machine has. */
 typedef struct OxrtPipelineVariant {
-    uint32_t isa;
+    uint32_t isa;   /* OXRT_ISA_... */
     uint32_t lanes; /* 1, 8 or 16 */
     const OxrtProgram* programs;
     uint32_t programCount;

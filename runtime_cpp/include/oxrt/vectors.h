@@ -27,7 +27,11 @@ inline namespace OXRT_ISA {
 
 /* ---- numbers ------------------------------------------------------------------------------------------------------------------ */
 
+#if defined(__aarch64__) && !defined(__clang__) && __GNUC__ < 13
+using half = __fp16; /* _Float16 came to this g++ later */
+#else
 using half = _Float16;
+#endif
 
 /* What a number is made of. `Rebind<U>` is a number of as many lanes with elements U. Specialised for Lanes in lanes.h. */
 template <class N> struct NumberTraits {

@@ -109,7 +109,7 @@ const OxrtProgram programs[] = {
     {"__anyhit__glass", OXRT_KIND_ANYHIT, sizeof(Glass), nullptr},
     {"__miss__dark", OXRT_KIND_MISS, 0, nullptr},
 };
-const OxrtPipelineVariant variants[] = {{OXRT_ISA_ANY, 1, programs, 3}};
+const OxrtPipelineVariant variants[] = {{oxrt::BUILT_ISA, 1, programs, 3}};
 static_assert(sizeof(Params) == 32);
 static_assert(sizeof(Glass) == 16);
 

@@ -152,7 +152,7 @@ const OxrtProgram programs[] = {
     {"__direct_callable__stripes", OXRT_KIND_DIRECT_CALLABLE, sizeof(Stripes), nullptr},
     {"__continuation_callable__glow", OXRT_KIND_CONTINUATION_CALLABLE, 0, nullptr},
 };
-const OxrtPipelineVariant variants[] = {{OXRT_ISA_X86_64_V4, 16, programs, 4}};
+const OxrtPipelineVariant variants[] = {{oxrt::BUILT_ISA, 16, programs, 4}};
 static_assert(sizeof(Params) == 24);
 static_assert(sizeof(Stripes) == 8);
 

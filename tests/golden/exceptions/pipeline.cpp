@@ -104,7 +104,7 @@ const OxrtProgram programs[] = {
     {"__closesthit__throwing", OXRT_KIND_CLOSESTHIT, 0, nullptr},
     {"__exception__note", OXRT_KIND_EXCEPTION, 0, nullptr},
 };
-const OxrtPipelineVariant variants[] = {{OXRT_ISA_ANY, 1, programs, 3}};
+const OxrtPipelineVariant variants[] = {{oxrt::BUILT_ISA, 1, programs, 3}};
 static_assert(sizeof(Params) == 24);
 
 }  // namespace

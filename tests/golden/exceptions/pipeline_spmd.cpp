@@ -172,7 +172,7 @@ const OxrtProgram programs[] = {
     {"__closesthit__throwing", OXRT_KIND_CLOSESTHIT, 0, nullptr},
     {"__exception__note", OXRT_KIND_EXCEPTION, 0, nullptr},
 };
-const OxrtPipelineVariant variants[] = {{OXRT_ISA_X86_64_V4, 16, programs, 3}};
+const OxrtPipelineVariant variants[] = {{oxrt::BUILT_ISA, 16, programs, 3}};
 static_assert(sizeof(Params) == 24);
 
 }  // namespace

@@ -114,7 +114,7 @@ const OxrtProgram programs[] = {
     {"__intersection__sphere", OXRT_KIND_INTERSECTION, sizeof(Sphere), nullptr},
     {"__closesthit__sphere", OXRT_KIND_CLOSESTHIT, 0, nullptr},
 };
-const OxrtPipelineVariant variants[] = {{OXRT_ISA_ANY, 1, programs, 3}};
+const OxrtPipelineVariant variants[] = {{oxrt::BUILT_ISA, 1, programs, 3}};
 static_assert(sizeof(Params) == 24);
 static_assert(sizeof(Sphere) == 16);
 

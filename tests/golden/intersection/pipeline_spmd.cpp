@@ -241,7 +241,7 @@ const OxrtProgram programs[] = {
     {"__intersection__sphere", OXRT_KIND_INTERSECTION, sizeof(Sphere), nullptr},
     {"__closesthit__sphere", OXRT_KIND_CLOSESTHIT, 0, nullptr},
 };
-const OxrtPipelineVariant variants[] = {{OXRT_ISA_X86_64_V4, 16, programs, 3}};
+const OxrtPipelineVariant variants[] = {{oxrt::BUILT_ISA, 16, programs, 3}};
 static_assert(sizeof(Params) == 24);
 static_assert(sizeof(Sphere) == 16);
 

@@ -76,7 +76,7 @@ void run_raygen_store(OxrtThread* thread, const OxrtTile* tile) {
 const OxrtProgram programs[] = {
     {"__raygen__store", OXRT_KIND_RAYGEN, 0, run_raygen_store},
 };
-const OxrtPipelineVariant variants[] = {{OXRT_ISA_ANY, 1, programs, 1}};
+const OxrtPipelineVariant variants[] = {{oxrt::BUILT_ISA, 1, programs, 1}};
 static_assert(sizeof(Params) == 112);
 
 }  // namespace

@@ -131,7 +131,7 @@ const OxrtProgram programs[] = {
     {"__miss__words", OXRT_KIND_MISS, 0, nullptr},
     {"__miss__nothing", OXRT_KIND_MISS, 0, nullptr},
 };
-const OxrtPipelineVariant variants[] = {{OXRT_ISA_ANY, 1, programs, 5}};
+const OxrtPipelineVariant variants[] = {{oxrt::BUILT_ISA, 1, programs, 5}};
 static_assert(sizeof(Params) == 24);
 
 }  // namespace

@@ -97,7 +97,7 @@ const OxrtProgram programs[] = {
     {"__closesthit__matte", OXRT_KIND_CLOSESTHIT, sizeof(Material), nullptr},
     {"__miss__sky", OXRT_KIND_MISS, 0, nullptr},
 };
-const OxrtPipelineVariant variants[] = {{OXRT_ISA_ANY, 1, programs, 3}};
+const OxrtPipelineVariant variants[] = {{oxrt::BUILT_ISA, 1, programs, 3}};
 static_assert(sizeof(Params) == 80);
 static_assert(sizeof(Material) == 12);
 

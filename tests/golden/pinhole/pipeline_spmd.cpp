@@ -148,7 +148,7 @@ const OxrtProgram programs[] = {
     {"__closesthit__matte", OXRT_KIND_CLOSESTHIT, sizeof(Material), nullptr},
     {"__miss__sky", OXRT_KIND_MISS, 0, nullptr},
 };
-const OxrtPipelineVariant variants[] = {{OXRT_ISA_X86_64_V4, 16, programs, 3}};
+const OxrtPipelineVariant variants[] = {{oxrt::BUILT_ISA, 16, programs, 3}};
 static_assert(sizeof(Params) == 80);
 static_assert(sizeof(Material) == 12);
 

@@ -205,7 +205,7 @@ const OxrtProgram programs[] = {
     {"__miss__black", OXRT_KIND_MISS, 0, nullptr},
     {"__miss__visible", OXRT_KIND_MISS, 0, nullptr},
 };
-const OxrtPipelineVariant variants[] = {{OXRT_ISA_X86_64_V4, 16, programs, 5}};
+const OxrtPipelineVariant variants[] = {{oxrt::BUILT_ISA, 16, programs, 5}};
 static_assert(sizeof(Params) == 40);
 static_assert(sizeof(Mirror) == 12);
 
