@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from harness import Harness
 from shaders import callable_arguments as shader
+from shaders import mutual as mutual_shader
 
 import optixc as ox
 
@@ -124,3 +125,39 @@ def test_a_callable_changes_only_copies_of_its_structs(tmp_path: Path) -> None:
                     "    a.x = 1.0\n    return b.x\n")
     with pytest.raises(ox.CompileError, match="read-only"):
         ox.DeviceContext().module_create(path)
+
+
+def mutual(harness: Harness, depths: list[int], limit: int) -> tuple[list[int], list[int]]:
+    """What continuation callables, traces and closest hits that go through each other add up to, and the exceptions."""
+    if "mutual" not in harness.kept:
+        module, create = harness.module("mutual.py"), harness.context.program_group_create
+        harness.kept["mutual"] = [create(raygen=module["__raygen__mutual"]), create(closesthit=module["__closesthit__again"]),
+                                  create(continuation_callable=module["__continuation_callable__shoot"]),
+                                  create(exception=module["__exception__note"])]
+    raygen, hit, shoot, exception = groups = harness.kept["mutual"]
+    options = ox.PipelineCompileOptions(exception_flags=ox.ExceptionFlags.TRACE_DEPTH)
+    pipeline = harness.pipeline(("mutual", limit), groups, max_trace_depth=limit, options=options)
+    scene = harness.context.accel_build([ox.BuildInputTriangles(np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0]], np.float32))])
+    out, codes = np.full(len(depths), 999, np.uint32), np.zeros(len(depths), np.int32)
+    params = mutual_shader.Params(scene=scene, out=out, codes=codes, depth=np.array(depths, np.uint32))
+    table = ox.ShaderBindingTable(raygen=raygen.record(), hitgroup=[hit.record()], exception=exception.record(),
+                                  callables=[shoot.record(mutual_shader.Weight(weight)) for weight in (100, 1000)])
+    harness.launch(pipeline, params, table, len(depths))
+    return out.tolist(), codes.tolist()
+
+
+def mutual_sum(depth: int) -> int:
+    # the raygen program calls the record of the depth, and every closest hit but the deepest that of its own level
+    return depth + sum((100, 1000)[level % 2] for level in [depth, *range(2, depth + 1)])
+
+
+def test_T269_continuation_callables_and_traces_nest(harness: Harness) -> None:
+    depths = [1 + index % 31 for index in range(62)]
+    assert mutual(harness, depths, 31) == ([mutual_sum(depth) for depth in depths], [0] * 62)
+
+
+def test_T269_deeper_than_the_pipeline_allows(harness: Harness) -> None:
+    depths = [3, 4, 5, 6, 2, 9, 4]
+    out, codes = mutual(harness, depths, 4)
+    assert codes == [-2 if depth > 4 else 0 for depth in depths]
+    assert out == [999 if depth > 4 else mutual_sum(depth) for depth in depths]

@@ -139,3 +139,52 @@ def test_T045_modules_with_different_parameters(tmp_path: Path) -> None:
               context.program_group_create(raygen=context.module_create(other)["__raygen__other"])]
     with pytest.raises(ox.PipelineLinkError, match="share one struct of launch parameters"):
         context.pipeline_create(groups)
+
+
+PLAIN = """import optixc as ox
+from optixc import Array, float3
+
+
+@ox.struct
+class Params:
+    out: Array[float]
+    scene: ox.Traversable
+
+
+@ox.payload
+class Ray:
+    t: float
+
+
+params = ox.launch_params(Params)
+
+
+@ox.program
+def __raygen__r():
+    ray = Ray(0.0)
+    ox.trace(params.scene, float3(0.0), float3(0.0, 0.0, 1.0), payload=ray)
+    params.out[ox.get_launch_index().x] = ray.t
+
+
+@ox.program
+def __closesthit__c(ray: Ray):
+    ray.t = ox.get_ray_tmax()
+"""
+
+
+@pytest.mark.parametrize("simd", ["1", "8", "16"])
+def test_T293_what_no_program_uses_is_not_compiled_in(tmp_path: Path, capsys: pytest.CaptureFixture[str], simd: str) -> None:
+    path = tmp_path / "plain.py"
+    words = ("usesTime", "usesMicromaps", "hasAnyHit", "hasIntersection", "hasMiss", "countsDepth", "mayThrow", "throwException",
+             "takeException", "isCancelled", "checked(", "print(", "ToWorld", "HitObject", "findCallable")
+    path.write_text(PLAIN)
+    assert main([str(path), "--emit", "cpp", "--simd", simd]) == 0
+    text = capsys.readouterr().out
+    assert [word for word in words if word in text] == []
+    more = ("\n\n@ox.program\ndef __anyhit__a():\n    ox.throw_exception(3)\n\n\n@ox.program\ndef __miss__m(ray: Ray):\n"
+            "    ray.t = ox.direct_call(0, result=float)\n\n\n@ox.program\ndef __direct_callable__d() -> float:\n    print('called')\n"
+            "    return 1.0\n")
+    path.write_text(PLAIN + more)
+    assert main([str(path), "--emit", "cpp", "--simd", simd]) == 0
+    text = capsys.readouterr().out
+    assert {"hasAnyHit", "hasMiss", "findCallable", "print("} - {word for word in words if word in text} == set()

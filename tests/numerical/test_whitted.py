@@ -30,7 +30,7 @@ def reference(monkeypatch: pytest.MonkeyPatch) -> Any:
         sys.modules.pop(name, None)
 
 
-def test_whitted_spheres_match_an_independent_renderer(library: Any, reference: Any, tmp_path: Path) -> None:
+def test_T288_whitted_spheres_match_an_independent_renderer(library: Any, reference: Any, tmp_path: Path) -> None:
     command = [sys.executable, EXAMPLE / "host.py", "--size", str(SIZE), "--samples", "1", "--output", tmp_path / "a.exr"]
     subprocess.run(command, check=True, capture_output=True)
     image = ox.read_image(tmp_path / "a.exr")[:, :, :3]
@@ -54,7 +54,7 @@ def test_whitted_spheres_match_an_independent_renderer(library: Any, reference: 
     assert np.count_nonzero(error > 2e-3) <= 0.01 * error.size
 
 
-def test_the_shadow_of_glass_is_lighter_than_that_of_metal(reference: Any) -> None:
+def test_T288_the_shadow_of_glass_is_lighter_than_that_of_metal(reference: Any) -> None:
     floor_points = {}
     for row in (0, 1):
         x, y, z, _ = reference.spheres[row]
