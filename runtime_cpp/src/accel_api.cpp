@@ -3,6 +3,7 @@
 #include "error.h"
 #include "objects.h"
 
+#include <cstdint>
 #include <cstring>
 #include <limits>
 #include <memory>

@@ -7,6 +7,7 @@
 #include "oxrt/embree.h"
 
 #include <algorithm>
+#include <cstdint>
 
 namespace oxrt {
 

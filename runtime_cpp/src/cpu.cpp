@@ -3,6 +3,7 @@
 
 #include "error.h"
 
+#include <cstdint>
 #include <cstdlib>
 #include <cstring>
 

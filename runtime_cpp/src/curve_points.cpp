@@ -4,6 +4,7 @@
 #include "error.h"
 
 #include <cmath>
+#include <cstdint>
 
 namespace oxrt {
 

@@ -7,6 +7,7 @@
 #include "shape.h"
 
 #include <algorithm>
+#include <cstdint>
 #include <vector>
 
 namespace oxrt {

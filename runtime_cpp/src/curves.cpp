@@ -3,6 +3,7 @@
 #include "curve_points.h"
 
 #include <cmath>
+#include <cstdint>
 
 namespace oxrt {
 

@@ -8,6 +8,7 @@
 #include "objects.h"
 #include "pipeline.h"
 
+#include <cstdint>
 #include <memory>
 #include <vector>
 

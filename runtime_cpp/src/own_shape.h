@@ -6,6 +6,7 @@
 #include "oxrt/pipeline.h"
 
 #include <cstddef>
+#include <cstdint>
 
 namespace oxrt {
 

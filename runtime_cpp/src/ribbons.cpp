@@ -7,6 +7,7 @@
 #include "polynomial.h"
 
 #include <cmath>
+#include <cstdint>
 
 namespace oxrt {
 

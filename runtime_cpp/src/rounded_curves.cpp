@@ -5,6 +5,7 @@
 #include "embree_library.h"
 
 #include <cmath>
+#include <cstdint>
 
 namespace oxrt {
 

@@ -6,6 +6,7 @@
 #include "error.h"
 #include "objects.h"
 
+#include <cstdint>
 #include <memory>
 #include <mutex>
 #include <pthread.h>

@@ -2,6 +2,8 @@
 #include "oxrt/device.h"
 #include "tiny_params.h"
 
+#include <cstdint>
+
 namespace {
 
 struct GraphPrograms : oxrt::NoPrograms {

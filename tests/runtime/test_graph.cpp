@@ -2,6 +2,7 @@
 #include "fixture.h"
 
 #include <cmath>
+#include <cstdint>
 #include <limits>
 
 namespace {

@@ -3,6 +3,7 @@
 
 #include <chrono>
 #include <sys/wait.h>
+#include <cstdint>
 #include <thread>
 #include <unistd.h>
 #include <xmmintrin.h>

@@ -3,6 +3,7 @@
 #include "tiny_params.h"
 
 #include <cmath>
+#include <cstdint>
 #include <xmmintrin.h>
 
 // In graph_program.cpp.
