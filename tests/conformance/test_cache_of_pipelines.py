@@ -199,3 +199,22 @@ def test_a_changed_shader_is_compiled_again(tmp_path: Path) -> None:
     path.write_text(SHADER.read_text().replace("1000.0", "1700.0"))
     value, report = run(tmp_path / "cache", path=path)
     assert (round(value), report.cache_hit) == (1700, False)
+
+
+def test_a_module_whose_file_changed_is_stale(tmp_path: Path) -> None:
+    """The cache knew the file, so that nobody has parsed it when it changes."""
+    path, cache = tmp_path / "changing.py", tmp_path / "cache"
+    path.write_text(SHADER.read_text())
+    run(cache, path=path)
+    context = ox.DeviceContext(cache_dir=cache)
+    module = context.module_create(path)
+    group = context.program_group_create(raygen=module["__raygen__branch"])
+    assert context.pipeline_create([group], simd=1).report().cache_hit
+    path.write_text(SHADER.read_text().replace("1000.0", "1900.0"))
+    with pytest.raises(ox.InvalidOperationError, match=r"changing\.py or a file that it imports changed since module_create; create"):
+        context.pipeline_create([group], simd=1, bound_values={"k": 3})
+    fresh = context.program_group_create(raygen=context.module_create(path)["__raygen__branch"])
+    context.pipeline_create([fresh], simd=1, bound_values={"k": 3})
+    path.unlink()
+    with pytest.raises(ox.OptixError, match="changing"):
+        context.pipeline_create([group], simd=1, bound_values={"k": 4})
