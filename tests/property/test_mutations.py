@@ -13,6 +13,7 @@ from optixc.diagnostics import CompileError
 from optixc.errors import OptixError
 from optixc.frontend.compile import FrontendResult, compile_file
 from optixc.ir.programs import ProgramKind
+from optixc.ir.verify import verify
 from optixc.options import CompileOptions
 
 ROOT = Path(__file__).parents[2]
@@ -24,7 +25,9 @@ LANES = (1, 8, 16)
 def front_end(path: Path, folder: Path) -> FrontendResult | None:
     """The module, or None where there are diagnostics; each of them stands in some file."""
     try:
-        return compile_file(str(path), include_dirs=[str(folder)])
+        result = compile_file(str(path), include_dirs=[str(folder)])
+        assert verify(result.module) == []
+        return result
     except CompileError as error:
         assert error.diagnostics
         assert all(diagnostic.span.line >= 1 and diagnostic.message for diagnostic in error.diagnostics)

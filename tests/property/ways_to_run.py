@@ -13,6 +13,8 @@ from types_of_programs import FLOATS, NUMBERS
 
 import optixc as ox
 from optixc import api
+from optixc.frontend.compile import compile_file
+from optixc.ir.verify import verify
 from optixc.options import CompileOptions
 
 ROWS = 21
@@ -71,6 +73,7 @@ class Ways:
     def compile(self, path: Path, names: list[str]) -> tuple[Any, dict[str, Any], list[Any]]:
         """Scalar pipeline, table of each program, and the program groups."""
         module = self.context.module_create(path)
+        assert verify(compile_file(str(path)).module) == []
         groups = {name: self.context.program_group_create(raygen=module[name]) for name in names}
         tables = {name: ox.ShaderBindingTable(raygen=group.record()) for name, group in groups.items()}
         return self.pipeline(list(groups.values()), 1), tables, list(groups.values())

@@ -101,13 +101,12 @@ def assign_target(c: Context, target: ast.expr, value: ast.expr | None, type_: C
 
 
 def _store(c: Context, target: ast.expr, value: ast.expr | None, type_: CheckType, stored: t.Type) -> None:
-    text = ast.unparse(target)
     if value is None:
         if not can_convert(type_, stored):
-            c.error("OX302", target, f"`{text}` is {stored}, this is {describe(type_)}", remedy(type_, stored))
+            c.error("OX302", target, f"`{ast.unparse(target)}` is {stored}, this is {describe(type_)}", remedy(type_, stored))
         return
-    if c.coerce(value, stored, f"`{text}`") and not isinstance(c.info(target).use, ElementUse):
-        check_no_alias(c, value, f"`{text}`")
+    if c.coerce(value, stored, target) and not isinstance(c.info(target).use, ElementUse):
+        check_no_alias(c, value, target)
 
 
 def _assign_name(c: Context, target: ast.Name, value: ast.expr | None, type_: CheckType) -> None:
@@ -260,4 +259,4 @@ def check_augmented(c: Context, node: ast.AugAssign) -> None:
         return
     stored = check_place(c, node.target)
     if stored is not None:
-        c.coerce(operation, stored, f"`{ast.unparse(node.target)}`")
+        c.coerce(operation, stored, node.target)

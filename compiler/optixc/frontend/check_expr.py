@@ -122,7 +122,6 @@ def _check_name(c: Context, node: ast.Name) -> ExprInfo:
 
 def symbol_value(c: Context, node: ast.expr, symbol: Symbol) -> ExprInfo:
     """A module-level name as a value."""
-    name = ast.unparse(node)
     match symbol:
         case ParamsSymbol(struct=struct):
             c.hooks.params(c, struct, node)
@@ -135,24 +134,24 @@ def symbol_value(c: Context, node: ast.expr, symbol: Symbol) -> ExprInfo:
             use = c.hooks.constant(c, symbol)
             if use is None:
                 reason = f"{c.hooks.host_constant(symbol)}, see {symbol.span}"
-                return c.error(
-                    "OX310", node, f"`{name}` cannot be used in a shader: it is host code ({reason})", "only constants and helpers can"
-                )
+                message = f"`{ast.unparse(node)}` cannot be used in a shader: it is host code ({reason})"
+                return c.error("OX310", node, message, "only constants and helpers can")
             info = use.body.info[symbol.node]
             if isinstance(info.type, Invalid):
                 return ExprInfo(INVALID)
             return ExprInfo(info.converted or info.type, constant=info.constant, use=use)
         case SkippedName(reason=reason, span=span, code=code):
             place = f", see {span}" if span is not None else ""
-            return c.error(code, node, f"`{name}` cannot be used in a shader: it is {reason}{place}", "only constants and helpers can")
+            message = f"`{ast.unparse(node)}` cannot be used in a shader: it is {reason}{place}"
+            return c.error(code, node, message, "only constants and helpers can")
         case FunctionSymbol():
-            return c.error("OX402", node, f"the function `{name}` is not a value", "call it")
+            return c.error("OX402", node, f"the function `{ast.unparse(node)}` is not a value", "call it")
         case StructSymbol() | EnumSymbol():
-            return c.error("OX402", node, f"the class `{name}` is not a value", "call it, or name one of its members")
+            return c.error("OX402", node, f"the class `{ast.unparse(node)}` is not a value", "call it, or name one of its members")
         case BuiltinName():
-            return c.error("OX402", node, f"`{name}` is not a value", "call it")
+            return c.error("OX402", node, f"`{ast.unparse(node)}` is not a value", "call it")
         case OptixNamespace() | FileSymbol() | PythonName():
-            return c.error("OX402", node, f"the module `{name}` is not a value", "name something in it")
+            return c.error("OX402", node, f"the module `{ast.unparse(node)}` is not a value", "name something in it")
 
 
 def _check_attribute(c: Context, node: ast.Attribute) -> ExprInfo:
@@ -180,9 +179,9 @@ def _attribute_note(type_: object) -> str:
 
 
 def _unknown_member(c: Context, node: ast.Attribute, base: Symbol) -> ExprInfo:
-    text = ast.unparse(node.value)
     if isinstance(base, SkippedName):
         return symbol_value(c, node.value, base)
+    text = ast.unparse(node.value)
     if isinstance(base, EnumSymbol):
         near = difflib.get_close_matches(node.attr, base.members, 1)
         return c.error("OX311", node, f"`{text}` has no member `{node.attr}`", f"did you mean `{near[0]}`?" if near else "")

@@ -21,7 +21,6 @@ from optixc.frontend.source_file import Diagnostics, SourceFile
 from optixc.frontend.symbols import FunctionSymbol, ParamsSymbol, Symbol
 from optixc.ir import types as t
 from optixc.ir.nodes import Module
-from optixc.ir.verify import verify
 from optixc.source import Span
 
 
@@ -129,10 +128,7 @@ def _compile(
     dependencies = tuple(declarer.files.dependencies)
     structs = tuple(symbol.type for symbol in structs_of(scope))
     checked = Checked(name, source.path, structs, checker.params, instances, _reached(instances), dependencies)
-    module = lower(checked)
-    problems = verify(module)
-    assert not problems, "\n".join(problems)
-    return FrontendResult(module, checked, dependencies)
+    return FrontendResult(lower(checked), checked, dependencies)
 
 
 def _params_of(scope: Declarations) -> t.Struct | None:

@@ -46,6 +46,11 @@ class Hooks:
     bound_names: dict[ast.FunctionDef, frozenset[str]] = field(default_factory=dict)
 
 
+def place_text(what: str | ast.expr) -> str:
+    """What a message calls a place. Its text is made only for a message: making it takes longer than checking it."""
+    return what if isinstance(what, str) else f"`{ast.unparse(what)}`"
+
+
 @dataclass(eq=False)
 class Context:
     """The state of checking one function instance. `scope` is the module scope of its definition."""
@@ -105,14 +110,14 @@ class Context:
         """Note a read or write of a payload parameter's field."""
         self.instance.payload_accesses.setdefault(local.name, []).append(access)
 
-    def coerce(self, node: ast.expr, target: t.Type, what: str) -> bool:
-        """Make an expression checked before a value of `target`, or report; `what` names the place ("argument `tmin`")."""
+    def coerce(self, node: ast.expr, target: t.Type, what: str | ast.expr) -> bool:
+        """Make an expression checked before a value of `target`, or report; `what` is or names the place ("argument `tmin`")."""
         info = self.info(node)
         value_type = widened(target)
         if isinstance(info.type, Invalid) or info.type == value_type:
             return True
         if not can_convert(info.type, target):
-            self.error("OX302", node, f"{what} must be {target}, this is {describe(info.type)}", remedy(info.type, target))
+            self.error("OX302", node, f"{place_text(what)} must be {target}, this is {describe(info.type)}", remedy(info.type, target))
             return False
         if is_weak(info.type) and info.constant is None and isinstance(node, ast.IfExp):
             return (
@@ -131,13 +136,13 @@ class Context:
         info.converted = target
         return True
 
-    def _constant_fits(self, node: ast.expr, info: ExprInfo, target: t.Scalar, what: str) -> bool:
+    def _constant_fits(self, node: ast.expr, info: ExprInfo, target: t.Scalar, what: str | ast.expr) -> bool:
         if is_weak(info.type) and isinstance(info.constant, int) and not fits(info.constant, target):
             wider = next((wide for wide in (t.UINT32, t.INT64, t.UINT64) if fits(info.constant, wide)), None)
             note = f"expected {range_of(target)}"
             if what == "this" and wider is not None:
                 note = f"write {wider}({info.constant})"
-            self.error("OX313", node, f"{what} is {target}, which does not hold {info.constant}", note)
+            self.error("OX313", node, f"{place_text(what)} is {target}, which does not hold {info.constant}", note)
             return False
         return True
 

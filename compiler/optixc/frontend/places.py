@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from enum import Enum
 
 from optixc.frontend.checked import ConstantUse, ElementUse, FieldUse, IndexUse, LocalUse, ParamsUse, PayloadAccess, SwizzleUse
-from optixc.frontend.context import Context
+from optixc.frontend.context import Context, place_text
 from optixc.ir import types as t
 from optixc.ir.nodes import Local, ParameterRole, is_reference_type
 from optixc.ir.programs import CALLABLES
@@ -100,7 +100,7 @@ def note_write(c: Context, place: Place, node: ast.AST) -> None:
         c.note_payload_access(place.local, PayloadAccess(place.field, True, c.span(node)))
 
 
-def check_no_alias(c: Context, node: ast.expr, what: str) -> bool:
+def check_no_alias(c: Context, node: ast.expr, what: str | ast.expr) -> bool:
     """Refuse a second name for a struct or fixed array that already has one."""
     info = c.info(node)
     if isinstance(node, ast.Tuple):
@@ -112,7 +112,7 @@ def check_no_alias(c: Context, node: ast.expr, what: str) -> bool:
         return True
     text = ast.unparse(node)
     text = text if len(text) <= 40 else "..."
-    c.error("OX308", node, f"{what} would be a second name of the {info.type} `{text}`", f"write ox.copy({text})")
+    c.error("OX308", node, f"{place_text(what)} would be a second name of the {info.type} `{text}`", f"write ox.copy({text})")
     return False
 
 

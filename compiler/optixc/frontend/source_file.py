@@ -19,6 +19,7 @@ class SourceFile:
 
     def __post_init__(self) -> None:
         self.lines = self.text.split("\n")
+        self._is_ascii = self.text.isascii()
 
     def line(self, number: int) -> str:
         """Line `number`, counted from 1; empty past the end."""
@@ -38,9 +39,9 @@ class SourceFile:
         return Span(self.path, span.line, span.column, span.line, len(self.line(span.line).rstrip()))
 
     def _column(self, line: int, byte_offset: int) -> int:
-        text = self.line(line)
-        if text.isascii():
+        if self._is_ascii:
             return byte_offset
+        text = self.line(line)
         return len(text.encode("utf-8")[:byte_offset].decode("utf-8", "ignore"))
 
 
