@@ -6,6 +6,7 @@
 
 from __future__ import annotations
 
+import argparse
 import time
 from dataclasses import dataclass
 from typing import Any
@@ -13,7 +14,7 @@ from typing import Any
 import numpy as np
 
 import optixc as ox
-from benchmarks.measure import interleave
+from benchmarks.measure import Clock, interleave
 from benchmarks.ours import shader_module
 from benchmarks.scenes import Floats, SceneMissing, scenes_folder
 
@@ -79,7 +80,7 @@ def scenes(context: ox.DeviceContext) -> dict[str, Any]:
             "two levels": _instances(context, groups), "moving": _instances(context, moving)}
 
 
-def measure(lanes: tuple[int, ...] = (1, 8, 16), rounds: int = ROUNDS) -> list[GraphTime]:
+def measure(lanes: tuple[int, ...] = (1, 8, 16), rounds: int = ROUNDS, clock: Clock = Clock.WALL) -> list[GraphTime]:
     """One thread; medians over interleaved rounds."""
     context = ox.DeviceContext(threads=1)
     shader = shader_module("graphs")
@@ -94,7 +95,7 @@ def measure(lanes: tuple[int, ...] = (1, 8, 16), rounds: int = ROUNDS) -> list[G
         for width in lanes:
             pipeline = context.pipeline_create([raygen, miss, hit], simd=width, options=ox.PipelineCompileOptions(uses_motion_blur=True))
             contenders = [_Run(name, pipeline, table, _params(shader, scene)) for name, scene in made.items()]
-            timings = interleave(contenders, rounds)
+            timings = interleave(contenders, rounds, clock)
             allowed = 1.6 if width > 1 and rays == "coherent" else 1.25
             found += [GraphTime(name, rays, width, 1.0 / timings.speed_up(name, "flattened"), allowed) for name in GRAPHS]
     return found
@@ -121,7 +122,12 @@ class _Run:
         return time.perf_counter() - start
 
 
-def measure_million(context: ox.DeviceContext) -> tuple[float, float]:
+def clock_seconds(clock: Clock) -> float:
+    """Now, by the clock on the wall or as processor time of this process."""
+    return time.perf_counter() if clock is Clock.WALL else time.process_time()
+
+
+def measure_million(context: ox.DeviceContext, clock: Clock = Clock.WALL) -> tuple[float, float]:
     """Seconds and MiB of an IAS of a million bunnies."""
     vertices, triangles = _normalised("bunny")
     bunny = context.accel_build([ox.BuildInputTriangles(vertices, triangles)])
@@ -129,33 +135,66 @@ def measure_million(context: ox.DeviceContext) -> tuple[float, float]:
     places = np.zeros((MILLION, 3, 4), np.float32)
     places[:, range(3), range(3)] = 1.0
     places[:, :, 3] = np.stack([number % 100, number // 100 % 100, number // 10000], axis=1)
-    start = time.perf_counter()
-    built = context.accel_build([ox.BuildInputInstances([bunny] * MILLION, transforms=places)])
-    return time.perf_counter() - start, built.memory_usage / 2**20
+    start = clock_seconds(clock)
+    built = context.accel_build([ox.BuildInputInstances(np.full(MILLION, bunny.handle, np.uint64), transforms=places)])
+    return clock_seconds(clock) - start, built.memory_usage / 2**20
 
 
-def measure_updates(context: ox.DeviceContext, updates: int = 4) -> tuple[float, list[float]]:
-    """Seconds of a build of the dragon that allows updates, and of its updates, the first included."""
+@dataclass
+class Updates:
+    """Seconds of a build of the dragon that allows updates and of its updates, the first included; tracing after them over before."""
+
+    build: float
+    updates: list[float]
+    tracing: float
+
+
+def measure_updates(context: ox.DeviceContext, clock: Clock = Clock.WALL, updates: int = 4) -> Updates:
+    """The dragon is moved, and bent by a twentieth of its size; rays are those of the graphs, one by one."""
     vertices, triangles = _normalised("dragon")
-    start = time.perf_counter()
+    start = clock_seconds(clock)
     built = context.accel_build([ox.BuildInputTriangles(vertices, triangles)], build_flags=ox.BuildFlags.ALLOW_UPDATE)
-    build, found = time.perf_counter() - start, []
+    build, found = clock_seconds(clock) - start, []
     for number in range(updates):
-        moved = vertices + np.float32(0.001 * (number + 1))
-        start = time.perf_counter()
-        built.update([ox.BuildInputTriangles(moved, triangles)])
-        found.append(time.perf_counter() - start)
-    return build, found
+        bend = np.float32(0.05 * (number + 1) / updates) * np.sin(np.float32(3.0) * vertices[:, [1, 2, 0]])
+        start = clock_seconds(clock)
+        built.update([ox.BuildInputTriangles(vertices + bend, triangles)])
+        found.append(clock_seconds(clock) - start)
+    rebuilt = context.accel_build([ox.BuildInputTriangles(vertices + bend, triangles)], build_flags=ox.BuildFlags.ALLOW_UPDATE)
+    shader = shader_module("graphs")
+    module = context.module_create(shader)
+    groups = [
+        context.program_group_create(**{kind: module[f"__{kind}__{name}"]})
+        for kind, name in (("raygen", "incoherent"), ("miss", "nothing"), ("closesthit", "distance"))
+    ]
+    table = ox.ShaderBindingTable(raygen=groups[0].record(), miss=[groups[1].record()], hitgroup=[groups[2].record()])
+    pipeline = context.pipeline_create(groups, simd=1)
+    timings = interleave(
+        [_Run(name, pipeline, table, _params(shader, scene)) for name, scene in (("updated", built), ("rebuilt", rebuilt))], 3, clock
+    )
+    return Updates(build, found, timings.speed_up("rebuilt", "updated"))
 
 
 def main() -> None:
+    parser = argparse.ArgumentParser(prog="python -m benchmarks.graphs", description=__doc__)
+    parser.add_argument("--parts", default="million,updates,graphs", help="comma-separated")
+    parser.add_argument("--lanes", default="1,8,16", help="widths, comma-separated")
+    parser.add_argument("--rounds", type=int, default=ROUNDS)
+    parser.add_argument("--clock", choices=[clock.value for clock in Clock], default=Clock.WALL.value)
+    arguments = parser.parse_args()
+    clock, parts = Clock(arguments.clock), arguments.parts.split(",")
     context = ox.DeviceContext()
-    for one in measure():
-        print(f"{one.graph:>10}, {one.rays:>10}, {one.lanes:2} lanes: {one.ratio:.2f} of the flattened time (allowed {one.allowed})")
-    seconds, mebibytes = measure_million(context)
-    print(f"1,000,000 instances: {seconds:.2f} s, {mebibytes:.0f} MiB (allowed 10 s, 1536 MiB)")
-    build, updates = measure_updates(context)
-    print(f"dragon: built in {build:.3f} s, updates {', '.join(f'{one / build:.3f}' for one in updates)} of it (allowed 0.25)")
+    if "million" in parts:
+        seconds, mebibytes = measure_million(context, clock)
+        print(f"1,000,000 instances: {seconds:.2f} s, {mebibytes:.0f} MiB (allowed 10 s, 1536 MiB)")
+    if "updates" in parts:
+        one = measure_updates(context, clock)
+        shares = ", ".join(f"{seconds / one.build:.3f}" for seconds in one.updates)
+        print(f"dragon: built in {one.build:.3f} s, updates {shares} of it (allowed 0.25); tracing {one.tracing:.2f} of a new build's time")
+    if "graphs" in parts:
+        for found in measure(tuple(int(part) for part in arguments.lanes.split(",")), arguments.rounds, clock):
+            row = f"{found.graph:>10}, {found.rays:>10}, {found.lanes:2} lanes"
+            print(f"{row}: {found.ratio:.2f} of the flattened time (allowed {found.allowed})")
 
 
 if __name__ == "__main__":

@@ -36,6 +36,7 @@ void* bench_scene_create(void* device); void bench_scene_commit(void* scene, int
 void bench_scene_add_triangles(void* device, void* scene, const float* vertices, size_t vertexCount, const unsigned* indices,
                                size_t triangleCount);
 void bench_scene_add_custom(void* device, void* scene, const float* boxes, unsigned count);
+void bench_scene_add_shapes(void* device, void* scene, const float* points, size_t pointCount, const unsigned* firsts, size_t count);
 """
 
 
@@ -118,7 +119,9 @@ class EmbreeScene:
         self.keep: list[NDArray[Any]] = []
         library, device = embree.library, embree.device
         self.handle = library.bench_scene_create(device)
-        if len(scene.spheres):
+        if len(scene.points):
+            self._add_shapes(scene.points, scene.segments)
+        elif len(scene.spheres):
             self._add_custom(sphere_boxes(scene.spheres))
             self._add_custom(floor_box(scene.floor_size))
         else:
@@ -132,6 +135,11 @@ class EmbreeScene:
         self.embree.library.bench_scene_add_triangles(
             self.embree.device, self.handle, vertex_pointer, len(vertices), index_pointer, len(triangles)
         )
+
+    def _add_shapes(self, points: Floats, segments: NDArray[np.uint32]) -> None:
+        firsts = self.embree.pointer(segments, "unsigned*") if len(segments) else self.embree.ffi.NULL
+        pointer = self.embree.pointer(points, "float*")
+        self.embree.library.bench_scene_add_shapes(self.embree.device, self.handle, pointer, len(points), firsts, len(segments))
 
     def _add_custom(self, boxes: Floats) -> None:
         self.keep.append(boxes)

@@ -21,7 +21,7 @@ from benchmarks.scenes import GLASS, MATERIALS, METAL, QUAD_TRIANGLES, SUN, Floa
 from benchmarks.workloads import Workload
 
 SHADERS = Path(__file__).resolve().parent / "shaders"
-TRACE_DEPTHS = {"primary": 1, "ambient_occlusion": 1, "path": 2, "heavy": 2, "whitted": 8, "cutouts": 2}
+TRACE_DEPTHS = {"primary": 1, "ambient_occlusion": 1, "path": 2, "heavy": 2, "whitted": 8, "cutouts": 2, "shapes": 1}
 
 
 @dataclass
@@ -160,6 +160,13 @@ def _cutouts(make: _Maker, scene: Scene) -> Programs:
     return Programs(make.group(raygen="cutouts"), [make.group(miss="sky"), make.group(miss="visible")], hits, params, inputs)
 
 
+def _shapes(make: _Maker, scene: Scene) -> Programs:
+    places, radii = np.ascontiguousarray(scene.points[:, :3]), np.ascontiguousarray(scene.points[:, 3])
+    curves = ox.BuildInputCurves(ox.PrimitiveType.ROUND_LINEAR, places, radii, scene.segments)
+    built = curves if len(scene.segments) else ox.BuildInputSpheres(places, radii)
+    return Programs(make.group(raygen="shapes"), [make.group(miss="nothing")], [(make.group(closesthit="shape"), None)], {}, [built])
+
+
 _SETUPS: dict[str, Callable[[_Maker, Scene], Programs]] = {
     "primary": _primary,
     "ambient_occlusion": _ambient_occlusion,
@@ -167,6 +174,7 @@ _SETUPS: dict[str, Callable[[_Maker, Scene], Programs]] = {
     "heavy": lambda make, scene: _tracer(make, scene, heavy=True),
     "whitted": _whitted,
     "cutouts": _cutouts,
+    "shapes": _shapes,
 }
 
 

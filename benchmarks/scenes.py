@@ -77,6 +77,9 @@ class Scene:
     uvs: Floats = field(default_factory=lambda: np.zeros((0, 2), np.float32))
     texels: NDArray[np.uint8] = field(default_factory=lambda: np.zeros((0, 0, 4), np.uint8))
     spheres: Floats = field(default_factory=lambda: np.zeros((0, 4), np.float32))
+    points: Floats = field(default_factory=lambda: np.zeros((0, 4), np.float32))
+    """x, y, z, radius: of curves, whose segments begin at `segments`, or of spheres."""
+    segments: Uints = field(default_factory=lambda: np.zeros(0, np.uint32))
     floor_size: float = 0.0
     material_of: Uints = field(default_factory=lambda: np.zeros(0, np.uint32))
     colors: Floats = field(default_factory=lambda: np.zeros((MATERIALS, 3), np.float32))
@@ -233,6 +236,29 @@ def leaf_scene(count: int = 30000) -> Scene:
     )
 
 
+def hair_scene() -> Scene:
+    """150,000 linear segments of straight hair, from behind."""
+    path = scenes_folder() / "hair_straight.npz"
+    if not path.is_file():
+        raise SceneMissing(f"no {path}: set OXRT_SCENES_DIR to the folder of the benchmark scenes")
+    with np.load(path) as arrays:
+        radii = np.full((len(arrays["points"]), 1), float(arrays["thickness"]) / 2)
+        points = np.concatenate([arrays["points"], radii], axis=1).astype(np.float32)
+        firsts = arrays["first"][:, None] + np.arange(int(arrays["count"].max()) - 1)
+    middle = (points[:, :3].max(0) + points[:, :3].min(0)) / 2
+    camera = pinhole(middle + _vector((0.0, -150.0, 0.0)), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0), 38.0)
+    return Scene("hair", camera, _NO_LIGHT, _vector((0, 0, 0)), 0.0, points=points, segments=firsts.ravel().astype(np.uint32))
+
+
+def point_scene(count: int = 100_000) -> Scene:
+    """Spheres of unlike sizes in a cube of 2 x 2 x 2 units."""
+    random = np.random.default_rng(17)
+    radii = 0.002 + 0.012 * random.random((count, 1)) ** 3
+    points = np.concatenate([random.uniform(-1.0, 1.0, (count, 3)), radii], axis=1).astype(np.float32)
+    camera = pinhole((0.0, 0.0, 4.0), (0.0, 0.0, -1.0), (0.0, 1.0, 0.0), 40.0)
+    return Scene("points", camera, _NO_LIGHT, _vector((0, 0, 0)), 0.0, points=points)
+
+
 SUN: Floats = _unit(_vector((0.5, 0.8, 0.4)))
 
 
@@ -243,5 +269,9 @@ def load_scene(name: str, camera: int = 0) -> Scene:
             return sphere_scene()
         case "leaves":
             return leaf_scene()
+        case "hair":
+            return hair_scene()
+        case "points":
+            return point_scene()
         case _:
             return mesh_scene(name, camera)

@@ -82,6 +82,12 @@ WORKLOADS = (
         ("leaves",), 1,
         {"leaves": 1.1}, {"leaves": 1.3},
     ),
+    Workload(
+        "shapes", "primary rays, round curves and spheres", "shapes",
+        ("shapes_scalar",), ("shapes_coherent", "shapes_packet"),
+        ("hair", "points"), 1,
+        {"hair": 0.9, "points": 0.95}, {"hair": 1.0, "points": 1.0},
+    ),
 )  # fmt: skip
 
 

@@ -49,6 +49,23 @@ void bench_scene_add_triangles(void* device, void* scene, const float* vertices,
     attach(static_cast<RTCScene>(scene), geometry);
 }
 
+// Round linear curves (`firsts`: the first point of each segment), or spheres where there are none. Points are x, y, z, radius.
+void bench_scene_add_shapes(void* device, void* scene, const float* points, size_t pointCount, const unsigned* firsts, size_t count) {
+    const RTCGeometryType type = firsts ? RTC_GEOMETRY_TYPE_ROUND_LINEAR_CURVE : RTC_GEOMETRY_TYPE_SPHERE_POINT;
+    RTCGeometry geometry = rtcNewGeometry(static_cast<RTCDevice>(device), type);
+    rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT4, points, 0, 16, pointCount);
+    if (firsts) {
+        rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT, firsts, 0, 4, count);
+        unsigned char* flags = static_cast<unsigned char*>(
+            rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_FLAGS, 0, RTC_FORMAT_UCHAR, 1, count));
+        for (size_t i = 0; i < count; ++i) {
+            const bool left = i > 0 && firsts[i - 1] + 1 == firsts[i], right = i + 1 < count && firsts[i] + 1 == firsts[i + 1];
+            flags[i] = (left ? RTC_CURVE_FLAG_NEIGHBOR_LEFT : 0) | (right ? RTC_CURVE_FLAG_NEIGHBOR_RIGHT : 0);
+        }
+    }
+    attach(static_cast<RTCScene>(scene), geometry);
+}
+
 void bench_scene_add_custom(void* device, void* scene, const float* boxes, unsigned count) {
     RTCGeometry geometry = rtcNewGeometry(static_cast<RTCDevice>(device), RTC_GEOMETRY_TYPE_USER);
     rtcSetGeometryUserPrimitiveCount(geometry, count);
