@@ -223,3 +223,24 @@ def _bilinear(alpha: np.ndarray, uvs: np.ndarray) -> np.ndarray:
     s, t = x - left, y - top
     read = [[alpha[(top + j) % height, (left + i) % width] for i in (0, 1)] for j in (0, 1)]
     return np.asarray((1 - t) * ((1 - s) * read[0][0] + s * read[0][1]) + t * ((1 - s) * read[1][0] + s * read[1][1]))
+
+
+@pytest.mark.parametrize("filter", ["linear", "nearest"])
+def test_a_baked_map_knows_what_lies_clear_of_the_outline(filter: str) -> None:
+    # Opaque below a slanted line in a picture of 128 texels; level 4 makes micro-triangles of 8 texels
+    size, level = 128, 4
+    x, y = np.meshgrid(np.arange(size) + 0.5, np.arange(size) + 0.5)
+    alpha = np.clip(0.5 + (0.83 * x + 0.56 * y - 88.0), 0.0, 1.0).astype(np.float32)
+    corners = np.array([[0.05, 0.05], [0.95, 0.05], [0.05, 0.95]])
+    baked = ox.bake_opacity_micromap(alpha, corners, level=level, filter=filter, wrap="clamp")
+    states = baked.maps[int(baked.indices[0])].states
+    parts = np.stack(ox.micromap_index_to_base_barycentrics(np.arange(4**level), level)).astype(np.float64)
+    places = size * (corners[0] + parts[..., :1] * (corners[1] - corners[0]) + parts[..., 1:] * (corners[2] - corners[0]))
+    height = 0.83 * places[..., 0] + 0.56 * places[..., 1] - 88.0
+    # A filter reads texels at most 1.5 away in x and y, so beyond 1.5 * (0.83 + 0.56) nothing of the other side is seen
+    margin = 2.1
+    assert (states[(height > margin).all(axis=0)] == 1).all()
+    assert (states[(height < -margin).all(axis=0)] == 0).all()
+    crossed = ((height > 0.5).any(axis=0)) & ((height < -0.5).any(axis=0))
+    assert crossed.sum() > 10
+    assert (states[crossed] >= 2).all()

@@ -1,4 +1,4 @@
-"""Opacity micromaps from a picture: every texel that a micro-triangle's points may read decides, so a known state is never wrong."""
+"""Opacity micromaps from a picture: bounds of what its points may read decide about a micro-triangle, so a known state is never wrong."""
 
 from __future__ import annotations
 
@@ -25,6 +25,7 @@ from optixc.host.opacity import (
 _COORDINATE_ROUNDING = 1.0 / 256.0
 _ALPHA_ROUNDING = 1e-6
 _AT_ONCE = 1 << 20
+_FINEST = 3  # levels by which a micro-triangle is split to bound what a filter gives on it
 Floats = NDArray[np.float64]
 Counts = NDArray[np.int64]
 
@@ -56,7 +57,7 @@ def bake_opacity_micromap(
 
     `alpha` is (height, width), uint8 (0 to 255 are 0 to 1) or float; `uvs` float (n, 2) by vertex, `indices` (m, 3) or None for vertices in
     threes. `filter` ("linear", "nearest") and `wrap` ("repeat", "clamp") are those of the texture that the program reads. A
-    micro-triangle is opaque or transparent only if every texel that its points may read says so; else it is unknown, and the program
+    micro-triangle is opaque or transparent only if all values that its points may read say so; else it is unknown, and the program
     decides as before. Triangles of one state need no micromap; equal micromaps are kept once.
     """
     picture = _picture(alpha)
@@ -118,8 +119,7 @@ class _Sampler:
     def states(self, corners: Floats, parts: Floats) -> NDArray[np.uint8]:
         """The state of every micro-triangle (their corners in `parts`) of every triangle."""
         size = np.array([self._width, self._height], np.float64)
-        a, b, c = corners[:, None, 0], corners[:, None, 1], corners[:, None, 2]
-        texels = [(a + part[None, :, :1] * (b - a) + part[None, :, 1:] * (c - a)) * size for part in parts]
+        texels = _split(corners * size, parts)
         low = np.minimum(np.minimum(texels[0], texels[1]), texels[2]) - _COORDINATE_ROUNDING
         high = np.maximum(np.maximum(texels[0], texels[1]), texels[2]) + _COORDINATE_ROUNDING
         shift = 0.5 if self._is_linear else 0.0
@@ -131,7 +131,75 @@ class _Sampler:
         states = np.where(self._middle_is_opaque(texels), UNKNOWN_OPAQUE, UNKNOWN_TRANSPARENT).astype(np.uint8)
         states[_count(self._opaque, x0, x1, y0, y1) == area] = OPAQUE
         states[_count(self._transparent, x0, x1, y0, y1) == area] = TRANSPARENT
+        unknown = np.nonzero(states > OPAQUE)
+        states[unknown] = self._state_by_rows(np.stack([one[unknown] for one in texels], axis=1), states[unknown])
+        if self._is_linear:
+            unknown = np.nonzero(states > OPAQUE)
+            states[unknown] = self._state_by_parts(np.stack([one[unknown] for one in texels], axis=1), states[unknown])
         return states
+
+    def _state_by_rows(self, points: Floats, states: NDArray[np.uint8]) -> NDArray[np.uint8]:
+        """States of micro-triangles (n, 3, 2) that their rectangles do not tell: row by row, only the texels beside the triangle count."""
+        shift = 0.5 if self._is_linear else 0.0
+        more = 1 if self._is_linear else 0
+        first = np.floor(points[:, :, 1].min(axis=1) - _COORDINATE_ROUNDING - shift).astype(np.int64)
+        last = np.floor(points[:, :, 1].max(axis=1) + _COORDINATE_ROUNDING - shift).astype(np.int64)
+        is_opaque, is_transparent = np.ones(len(points), bool), np.ones(len(points), bool)
+        for step in range(int((last - first).max(initial=-1)) + 1):
+            row = np.minimum(first + step, last)
+            left, right = _extent(points, row + shift - _COORDINATE_ROUNDING, row + 1 + shift + _COORDINATE_ROUNDING)
+            begin = np.floor(left - _COORDINATE_ROUNDING - shift).astype(np.int64)
+            end = np.floor(right + _COORDINATE_ROUNDING - shift).astype(np.int64)
+            x0, x1 = self._range(begin, end + more, self._width)
+            y0, y1 = self._range(row, row + more, self._height)
+            area = (x1 - x0) * (y1 - y0)
+            is_opaque &= _count(self._opaque, x0, x1, y0, y1) == area
+            is_transparent &= _count(self._transparent, x0, x1, y0, y1) == area
+        return np.where(is_opaque, OPAQUE, np.where(is_transparent, TRANSPARENT, states)).astype(np.uint8)
+
+    def _state_by_parts(self, points: Floats, states: NDArray[np.uint8]) -> NDArray[np.uint8]:
+        """States of micro-triangles (n, 3, 2) that texels do not tell: by bounds of the filtered values in rectangles of about a texel."""
+        size = (points.max(axis=1) - points.min(axis=1)).max(axis=1, initial=1.0)
+        level = np.minimum(np.ceil(np.log2(size)), _FINEST).astype(np.int64)
+        made = states.copy()
+        for finer in range(_FINEST + 1):
+            parts = np.stack(micromap_index_to_base_barycentrics(np.arange(4**finer), finer)).astype(np.float64)
+            chosen = np.flatnonzero(level == finer)
+            step = max(1, _AT_ONCE // 4**finer)
+            for first in range(0, len(chosen), step):
+                numbers = chosen[first : first + step]
+                least, most = self._filtered_bounds(_split(points[numbers], parts))
+                known = np.where(most < self._cutoff - _ALPHA_ROUNDING, TRANSPARENT, states[numbers])
+                made[numbers] = np.where(least >= self._cutoff + _ALPHA_ROUNDING, OPAQUE, known)
+        return made
+
+    def _filtered_bounds(self, corners: list[Floats]) -> tuple[Floats, Floats]:
+        """The least and the greatest filtered alpha on rows of small triangles, corner by corner (n, m, 2). Between four texel centres it
+        is bilinear, so on a rectangle its extremes lie at the corners."""
+        low = np.minimum(np.minimum(corners[0], corners[1]), corners[2]) - _COORDINATE_ROUNDING - 0.5
+        high = np.maximum(np.maximum(corners[0], corners[1]), corners[2]) + _COORDINATE_ROUNDING - 0.5
+        first, last = np.floor(low).astype(np.int64), np.floor(high).astype(np.int64)
+        least, most = np.full(low.shape[:2], np.inf), np.full(low.shape[:2], -np.inf)
+        for offset in ((0, 0), (1, 0), (0, 1), (1, 1)):
+            cell = first + np.array(offset)
+            begin, end = np.clip(low - cell, 0.0, 1.0), np.clip(high - cell, 0.0, 1.0)
+            values = []
+            for x, y in ((begin, begin), (begin, end), (end, begin), (end, end)):
+                upper = self._alpha(cell, 0, 0) * (1.0 - x[..., 0]) + self._alpha(cell, 1, 0) * x[..., 0]
+                lower = self._alpha(cell, 0, 1) * (1.0 - x[..., 0]) + self._alpha(cell, 1, 1) * x[..., 0]
+                values.append(upper * (1.0 - y[..., 1]) + lower * y[..., 1])
+            reached = (cell <= last).all(axis=-1)
+            least = np.where(reached, np.minimum(least, np.min(values, axis=0)), least)
+            most = np.where(reached, np.maximum(most, np.max(values, axis=0)), most)
+        is_wide = (last - first > 1).any(axis=-1)
+        return np.where(is_wide, -np.inf, least).min(axis=1), np.where(is_wide, np.inf, most).max(axis=1)
+
+    def _alpha(self, cell: Counts, right: int, down: int) -> Floats:
+        """Alpha of the texel beside a cell's first one."""
+        x, y = cell[..., 0] + right, cell[..., 1] + down
+        if self._repeats:
+            return self._picture[np.mod(y, self._height), np.mod(x, self._width)]
+        return self._picture[np.clip(y, 0, self._height - 1), np.clip(x, 0, self._width - 1)]
 
     def _range(self, first: Counts, last: Counts, size: int) -> tuple[Counts, Counts]:
         """Texels first to last as begin and end of a range in the summed areas."""
@@ -149,6 +217,31 @@ class _Sampler:
         else:
             x, y = np.clip(x, 0, self._width - 1), np.clip(y, 0, self._height - 1)
         return np.asarray(self._picture[y, x] >= self._cutoff)
+
+
+def _split(corners: Floats, parts: Floats) -> list[Floats]:
+    """The three corners (n, m, 2) of every micro-triangle, given by barycentrics (3, m, 2), of triangles (n, 3, 2)."""
+    a, b, c = corners[:, None, 0], corners[:, None, 1], corners[:, None, 2]
+    return [a + part[None, :, :1] * (b - a) + part[None, :, 1:] * (c - a) for part in parts]
+
+
+def _extent(points: Floats, bottom: Floats, top: Floats) -> tuple[Floats, Floats]:
+    """The least and the greatest x of triangles (n, 3, 2) where y is between `bottom` and `top`, from their clipped edges."""
+    left, right = np.full(len(points), np.inf), np.full(len(points), -np.inf)
+    for a, b in ((points[:, 0], points[:, 1]), (points[:, 1], points[:, 2]), (points[:, 2], points[:, 0])):
+        rise = b[:, 1] - a[:, 1]
+        is_level = rise == 0.0
+        slope = np.where(is_level, 1.0, rise)
+        at_bottom, at_top = (bottom - a[:, 1]) / slope, (top - a[:, 1]) / slope
+        inside = (a[:, 1] >= bottom) & (a[:, 1] <= top)
+        begin = np.where(is_level, np.where(inside, 0.0, 2.0), np.clip(np.minimum(at_bottom, at_top), 0.0, None))
+        end = np.where(is_level, np.where(inside, 1.0, -1.0), np.clip(np.maximum(at_bottom, at_top), None, 1.0))
+        for t in (begin, end):
+            x = a[:, 0] + t * (b[:, 0] - a[:, 0])
+            left = np.where(begin <= end, np.minimum(left, x), left)
+            right = np.where(begin <= end, np.maximum(right, x), right)
+    is_outside = left > right  # by rounding only: the whole width is safe
+    return np.where(is_outside, points[:, :, 0].min(axis=1), left), np.where(is_outside, points[:, :, 0].max(axis=1), right)
 
 
 def _summed(mask: NDArray[np.bool_]) -> Counts:
