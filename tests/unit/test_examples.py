@@ -15,6 +15,11 @@ import pytest
 
 import optixc as ox
 from optixc import installation
+from optixc.stdlib import shapes
+from optixc.stdlib.camera import ThinLens
+from optixc.stdlib.environment import environment_map
+from optixc.stdlib.light import RectangleLight
+from optixc.stdlib.principled import Principled
 
 EXAMPLES = Path(__file__).resolve().parents[2] / "examples"
 FOLDERS = sorted(folder.name for folder in EXAMPLES.iterdir() if re.fullmatch(r"\d\d_\w+", folder.name))
@@ -265,3 +270,89 @@ def test_material_network_wires_nodes_to_objects(tmp_path: Path) -> None:
     assert blue[2] > 1.5 * blue[1], "lacquer"
     paper = color(0.1, 0.9)
     assert paper.max() < 1.2 * paper.min(), "paper is nearly grey"
+
+
+def test_path_tracer_shows_cars_floor_and_sky(tmp_path: Path) -> None:
+    output = run("13_path_tracer", "--width", 96, "--height", 54, "--samples", 4, "--every", 2, "--output", tmp_path / "a.exr")
+    assert "Mrays/s" in output
+    image = ox.read_image(tmp_path / "a.exr")[:, :, :3]
+    assert np.isfinite(image).all()
+    assert image.min() >= 0.0
+    assert image.max() <= 1.0
+    sky, floor, red = image[2].mean(axis=0), image[-4:].mean(axis=(0, 1)), image[26:30, 36:42].mean(axis=(0, 1))
+    assert sky[0] > 1.3 * sky[2], "the evening is warm at the horizon"
+    assert 0.01 < floor.mean() < sky.mean()
+    assert red[0] > 2.0 * red[1], "the car in front is red"
+
+
+@pytest.mark.parametrize("lit_by", ["sky", "lamp"])
+def test_path_tracer_mirrors_all_light_of_a_furnace(lit_by: str) -> None:
+    """A floor that loses nothing below a uniform sky, or an endless lamp: radiance 1 everywhere, whichever strategy found it."""
+    shader, size = source("13_path_tracer", "shader"), 32
+    context = ox.DeviceContext()
+    module = context.module_create(EXAMPLES / "13_path_tracer" / "shader.py")
+    path = context.program_group_create(raygen=module["__raygen__path"])
+    hit = context.program_group_create(closesthit=module["__closesthit__part"])
+    pipeline = context.pipeline_create([path, hit])
+    lamp = RectangleLight((-1e4, 1.0, -1e4), (2e4, 0.0, 0.0), (0.0, 0.0, 2e4), (float(lit_by == "lamp"),) * 3)
+    floor = shapes.rectangle((-1e5, 0.0, 1e5), (2e5, 0.0, 0.0), (0.0, 0.0, -2e5))
+    box = shapes.rectangle(lamp.corner, lamp.edge_u, lamp.edge_v)
+    meshes = [floor, box] if lit_by == "lamp" else [floor]
+    scene = context.accel_build([ox.BuildInputInstances([
+        ox.Instance(context.accel_build([ox.BuildInputTriangles(mesh.vertices, mesh.indices)]), sbt_offset=k, instance_id=k)
+        for k, mesh in enumerate(meshes)])])
+    mirror = Principled((1.0, 1.0, 1.0), 1.0, 0.3, 0.5, 0.0, 0.0, 0.0)
+    table = ox.ShaderBindingTable(path.record(), hitgroup=[hit.record(shader.Part(mesh.indices, mesh.normals, mirror)) for mesh in meshes])
+    sums = np.zeros((size, size, 4), np.float32)
+    params = shader.Params(
+        sums=sums, image=np.zeros_like(sums), ray_counts=np.zeros((size, size), np.uint32), scene=scene,
+        camera=ThinLens((0.0, 0.6, 0.0), (0.3, 0.0, 0.0), (0.0, 0.0, -0.3), (0.0, -0.6, 0.0), (0.0, 0.0, 0.0), (0.0, 0.0, 0.0)),
+        lamp=lamp, sky=environment_map(np.full((16, 32, 3), float(lit_by == "sky"))),
+        sample=0, max_bounces=3, max_indirect=1e9, exposure=0.0)
+    for sample in range(16):
+        params.sample = sample
+        pipeline.launch(params, table, width=size, height=size)
+    values = sums[:, :, 0] / sums[:, :, 3]
+    # A lobe of alpha 0.09 loses below a hundredth to microfacets behind others, seen from within 30 degrees of the normal
+    error = 4.0 * values.std() / size
+    assert 0.99 - error < values.mean() < 1.0 + error
+    assert error < 0.05
+
+
+def test_photons_are_counted_and_their_power_is_conserved(tmp_path: Path) -> None:
+    output = run("14_photon_mapping", "--width", 64, "--height", 36, "--samples", 2, "--photons", 50000, "--output", tmp_path / "a.exr")
+    names = ("emitted", "kept", "escaped", "taken")
+    power = {name: np.array(re.search(rf"{name} +\[(.*?)\]", output)[1].split(), float) for name in names}
+    # Printed with four decimals: each of four numbers is off by at most half of the last
+    np.testing.assert_allclose(power["kept"] + power["escaped"] + power["taken"], power["emitted"], atol=4 * 0.5e-4)
+    missing, bound = map(float, re.search(r"missing +(\S+) of the power, rounding may lose (\S+)", output).groups())
+    assert missing <= bound
+    photons, kept, caustic = map(int, re.search(r"(\d+) photons a pass: (\d+) kept, (\d+) of them", output).groups())
+    assert photons == 50000
+    assert photons > kept > caustic > 0
+    # Photons start with equal power, and only some of it is taken on the way: kept power is between that of direct photons and of all kept
+    share = power["kept"][0] / power["emitted"][0]
+    assert (kept - caustic) / photons <= share <= kept / photons
+    image = ox.read_image(tmp_path / "a.exr")[:, :, :3]
+    assert np.isfinite(image).all()
+    assert image.min() >= 0.0
+
+
+def test_photon_grid_holds_every_photon_in_its_cell(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.syspath_prepend(str(EXAMPLES / "14_photon_mapping"))
+    for name in ("shader", "photon_map"):
+        monkeypatch.setitem(sys.modules, name, source("14_photon_mapping", name))
+    shader, photon_map = sys.modules["shader"], sys.modules["photon_map"]
+    random, count = np.random.default_rng(5), 2000
+    photons = np.zeros(count, shader.Photon.dtype)
+    photons["position"] = random.uniform(-1.0, 2.0, (count, 3))
+    photons["fate"] = random.integers(0, 4, count)
+    grid = photon_map.grid(photons, 0.25)
+    kept = photons[photons["fate"] <= 1]
+    assert len(grid.photons) == len(kept) == grid.starts[-1]
+    x, y, z = (int(grid.size[axis]) for axis in range(3))
+    assert len(grid.starts) == x * y * z + 1
+    for cell in range(x * y * z):
+        inside = grid.photons["position"][grid.starts[cell] : grid.starts[cell + 1]]
+        found = np.minimum(np.floor((inside - kept["position"].min(axis=0)) / np.float32(0.25)), [x - 1, y - 1, z - 1])
+        np.testing.assert_array_equal(found, np.broadcast_to([cell % x, cell // x % y, cell // (x * y)], inside.shape))

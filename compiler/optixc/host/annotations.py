@@ -51,12 +51,12 @@ if TYPE_CHECKING:
     class Array2(Array[T]):
         """A 2-D view."""
 
-        def __set__(self, instance: Any, value: np.ndarray[Any, Any] | None) -> None: ...
+        def __set__(self, instance: Any, value: np.ndarray[Any, Any] | Sequence[Any] | None) -> None: ...
 
     class Array3(Array[T]):
         """A 3-D view."""
 
-        def __set__(self, instance: Any, value: np.ndarray[Any, Any] | None) -> None: ...
+        def __set__(self, instance: Any, value: np.ndarray[Any, Any] | Sequence[Any] | None) -> None: ...
 
     FixedArray = Annotated
     Traversable = Any

@@ -280,7 +280,7 @@ class ArrayField:
                 f"{where} takes a numpy array ({self._wanted()}), whose memory shaders then use, not {type(value).__name__}"
             )
         array = np.zeros(len(value), base).view(StructArray)
-        memory = memoryview(array.view(np.uint8)) if value else memoryview(bytearray())
+        memory = array.view(np.uint8).data
         array.sources = tuple(
             self.element.store(memory, number * base.itemsize, item, f"{where}[{number}]") for number, item in enumerate(value)
         )
