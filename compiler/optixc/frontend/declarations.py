@@ -123,7 +123,7 @@ _STATEMENT_WORDS: dict[type[ast.stmt], str] = {
     ast.While: "`while`",
     ast.With: "`with`",
     ast.Try: "`try`",
-    ast.Assign: "unpacking",
+    ast.Assign: "unpacking: a constant is one name on a line of its own",
     ast.AugAssign: "augmented assignment",
     ast.Delete: "`del`",
 }
