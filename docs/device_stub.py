@@ -144,7 +144,9 @@ def _signatures(row: Intrinsic) -> list[str]:
         several = len(row.parameters) > 1 and form == "_V" and row.parameters[0].type is not Generic.FLOAT_VECTOR
         texts = []
         for parameter in row.parameters:
-            if isinstance(parameter.type, Generic):
+            if parameter.type is Generic.HANDLES:
+                texts.append(_parameter(parameter, "Any"))
+            elif isinstance(parameter.type, Generic):
                 scalar = "float" if parameter.type is Generic.ELEMENT else form
                 texts.append(_parameter(parameter, "_V | float" if several and scalar == "_V" else scalar))
             else:

@@ -76,7 +76,7 @@ HOST: tuple[tuple[str, str, str, str], ...] = (
 )
 
 # Rows that the emitters or headers do not know yet; a test compiles every other one.
-MISSING: frozenset[str] = frozenset({"optixGetGASPointerFromHandle", "optixHitObjectGetSbtDataPointer"})
+MISSING: frozenset[str] = frozenset({"optixGetGASPointerFromHandle"})
 
 # Device functions of OptiX 9 that have no row in the table.
 ABSENT_DEVICE: tuple[tuple[str, str], ...] = (
@@ -85,8 +85,6 @@ ABSENT_DEVICE: tuple[tuple[str, str], ...] = (
         "optixIsDisplacedMicromeshTriangleFrontFaceHit, optixIsDisplacedMicromeshTriangleBackFaceHit",
         "dropped by OptiX 9",
     ),
-    ("optixMakeHitObjectWithRecord", "make the hit object by traversing, then hit_object_set_sbt_record_index"),
-    ("optixMakeHitObject, optixHitObjectGetTraverseData", "keep the hit object of the traversal, or traverse again"),
     ("optixGetExceptionLineInfo", "failed launches tell path and line"),
     ("optixTexFootprint2D, optixTexFootprint2DLod, optixTexFootprint2DGrad", ""),
     ("optixCoopVec...", "write the matrix product as a loop"),

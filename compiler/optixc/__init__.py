@@ -16,7 +16,7 @@ from optixc.diagnostics import CompileError
 from optixc.enums import *  # noqa: F403
 from optixc.errors import *  # noqa: F403
 from optixc.host.accel import Accel
-from optixc.host.annotations import Array, Array2, Array3, FixedArray, Texture, Traversable
+from optixc.host.annotations import Array, Array2, Array3, FixedArray, Texture, Traversable, TraverseData
 from optixc.host.bound_values import BoundValue
 from optixc.host.context import OptixcWarning
 from optixc.host.groups import Module, Program, ProgramGroup, Record
@@ -125,6 +125,7 @@ __all__ = [
     "ToolchainError",
     "Transform",
     "Traversable",
+    "TraverseData",
     "__version__",
     "attributes",
     "bake_opacity_micromap",

@@ -690,11 +690,25 @@ def hit_object_transform_normal_from_world_to_object_space(value: float3) -> flo
 def hit_object_transform_normal_from_object_to_world_space(value: float3) -> float3:
     """Through the outgoing hit object's transforms; not normalised."""
 
+def hit_object_get_traverse_data() -> Any:
+    """The hit as words that make_hit_object takes."""
+
 def hit_object_get_transform_list_handle(index: int) -> Traversable:
     """Outgoing hit object: transform `index`, 0 outermost."""
 
 def hit_object_get_ribbon_normal(parameters: float2) -> float3:
     """Outgoing hit object: geometric normal of the ribbon."""
+
+@overload
+def make_hit_object(handle: Traversable, origin: float3, direction: float3, tmin: float, ray_time: float, ray_flags: int, traverse_data: Any, transforms: Any, num_transforms: int) -> None: ...
+@overload
+def make_hit_object(handle: Traversable, origin: float3, direction: float3, tmin: float, tmax: float, ray_time: float, sbt_offset: int, sbt_stride: int, instance_index: int, sbt_gas_index: int, primitive_index: int, hit_kind: int, attribute_0: int = ..., attribute_1: int = ..., attribute_2: int = ..., attribute_3: int = ..., attribute_4: int = ..., attribute_5: int = ..., attribute_6: int = ..., attribute_7: int = ...) -> None: ...
+@overload
+def make_hit_object(handle: Traversable, origin: float3, direction: float3, tmin: float, tmax: float, ray_time: float, sbt_offset: int, sbt_stride: int, instance_index: int, transforms: Any, num_transforms: int, sbt_gas_index: int, primitive_index: int, hit_kind: int, attribute_0: int = ..., attribute_1: int = ..., attribute_2: int = ..., attribute_3: int = ..., attribute_4: int = ..., attribute_5: int = ..., attribute_6: int = ..., attribute_7: int = ...) -> None:
+    """Make the outgoing hit object the hit that the traverse data of an earlier one tell, below these transforms."""
+
+def make_hit_object_with_record(handle: Traversable, origin: float3, direction: float3, tmin: float, tmax: float, ray_time: float, sbt_record_index: int, instance_index: int, transforms: Any, num_transforms: int, sbt_gas_index: int, primitive_index: int, hit_kind: int, attribute_0: int = ..., attribute_1: int = ..., attribute_2: int = ..., attribute_3: int = ..., attribute_4: int = ..., attribute_5: int = ..., attribute_6: int = ..., attribute_7: int = ...) -> None:
+    """Make the outgoing hit object a hit at tmax of this primitive with this record (OptiX 8)."""
 
 def make_miss_hit_object(miss_sbt_index: int, origin: float3, direction: float3, tmin: float, tmax: float, ray_time: float = ..., ray_flags: int = ...) -> None:
     """Make the outgoing hit object a miss."""

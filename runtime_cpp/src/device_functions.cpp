@@ -1,7 +1,7 @@
 // The pure device functions by name, for oxrt/interpret.h: each a small adapter around the function of oxrt/device.h that compiled
 // kernels use. Compiled with the floating-point flags of kernels.
 #include "oxrt/device.h"
-#include "oxrt/device_hit_object.h"
+#include "oxrt/device_make_hit.h"
 #include "oxrt/device_texture.h"
 #include "oxrt/interpret.h"
 
@@ -71,6 +71,18 @@ void give(void* result, const T& value)
 HitObject& changeable(State state)
 {
     return *static_cast<HitObject*>(const_cast<void*>(state));
+}
+
+// Makers of hits: the interpreter gives as many transforms as there can be.
+using Transforms = FixedArray<uint64_t, MAX_PATH_NODES>;
+
+template <int FIRST, class... GIVEN>
+void makeFromNumbers(HitObject& object, Arguments a, GIVEN... given)
+{
+    const auto word = [a](int index) { return take<uint32_t>(a, FIRST + index); };
+    makeHitObject(object, take<uint64_t>(a, 0), take<float3>(a, 1), take<float3>(a, 2), take<float>(a, 3), take<float>(a, 4),
+                  take<float>(a, 5), given..., word(0), word(1), word(2), word(3), word(4), word(5), word(6), word(7), word(8), word(9),
+                  word(10));
 }
 
 // The functions that read the hit, once for the ray in flight and once for the outgoing hit object.
@@ -190,6 +202,27 @@ const std::unordered_map<std::string_view, OxrtDeviceFunction>& functions()
         {"make_nop_hit_object", [](State state, Arguments, void*) { makeNopHitObject(changeable(state)); }},
         {"hit_object_set_sbt_record_index",
          [](State state, Arguments a, void*) { hitObjectSetSbtRecordIndex(changeable(state), take<uint32_t>(a, 0)); }},
+        {"hit_object_get_traverse_data",
+         [](State state, Arguments, void* result) { give(result, hitObjectGetTraverseData(*static_cast<const HitObject*>(state))); }},
+        {"make_hit_object",
+         [](State state, Arguments a, void*) {
+             makeHitObject(changeable(state), take<uint64_t>(a, 0), take<float3>(a, 1), take<float3>(a, 2), take<float>(a, 3),
+                           take<float>(a, 4), take<uint32_t>(a, 5), take<TraverseData>(a, 6), take<Transforms>(a, 7), take<uint32_t>(a, 8));
+         }},
+        {"make_hit_object_of_instance",
+         [](State state, Arguments a, void*) {
+             makeFromNumbers<9>(changeable(state), a, take<uint32_t>(a, 6), take<uint32_t>(a, 7), take<uint32_t>(a, 8));
+         }},
+        {"make_hit_object_below_transforms",
+         [](State state, Arguments a, void*) {
+             makeFromNumbers<11>(changeable(state), a, take<uint32_t>(a, 6), take<uint32_t>(a, 7), take<uint32_t>(a, 8),
+                                 take<Transforms>(a, 9), take<uint32_t>(a, 10));
+         }},
+        {"make_hit_object_with_record",
+         [](State state, Arguments a, void*) {
+             makeFromNumbers<10>(changeable(state), a, 0u, 0u, take<uint32_t>(a, 7), take<Transforms>(a, 8), take<uint32_t>(a, 9));
+             hitObjectSetSbtRecordIndex(changeable(state), take<uint32_t>(a, 6));
+         }},
         {"make_miss_hit_object",
          [](State state, Arguments a, void*) {
              makeMissHitObject(changeable(state), take<uint32_t>(a, 0), take<float3>(a, 1), take<float3>(a, 2), take<float>(a, 3),

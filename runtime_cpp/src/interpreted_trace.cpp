@@ -80,9 +80,9 @@ void traceInterpreted(InterpretedThread& owner, const OxrtRayArguments& argument
         owner.usesTime ? traceAs<Moving>(owner, arguments, payload) : traceAs<Static>(owner, arguments, payload);
 }
 
-void* newHitObject()
+void* newHitObject(InterpretedThread& owner)
 {
-    return new HitObject;
+    return new HitObject(owner.thread);
 }
 
 void freeHitObject(void* object)

@@ -17,7 +17,7 @@ struct InterpretedThread {
 };
 
 void traceInterpreted(InterpretedThread& owner, const OxrtRayArguments& arguments, uint32_t* payload);
-void* newHitObject();
+void* newHitObject(InterpretedThread& owner);
 void freeHitObject(void* object);
 void traverseInterpreted(InterpretedThread& owner, void* object, const OxrtRayArguments& arguments, uint32_t* payload);
 void invokeInterpreted(InterpretedThread& owner, void* object, uint32_t* payload);

@@ -76,7 +76,7 @@ void oxrtInterpreterTrace(OxrtInterpreter interpreter, const OxrtRayArguments* a
 
 void* oxrtInterpreterNewHitObject(OxrtInterpreter interpreter)
 {
-    void* object = newHitObject();
+    void* object = newHitObject(interpreter->owner);
     interpreter->hitObjects.push_back(object);
     return object;
 }

@@ -75,7 +75,7 @@ class PipelineFile:
         self._writer.line("*/")
         self._writer.line("#include <oxrt/device.h>")
         if self._features.has("hit objects"):
-            self._writer.line("#include <oxrt/device_hit_object.h>")
+            self._writer.line("#include <oxrt/device_make_hit.h>")
         if self._features.has("textures"):
             self._writer.line("#include <oxrt/device_texture.h>")
         self._writer.line()

@@ -79,7 +79,7 @@ class ScalarFunction:
             params = self._types.struct(self._calls.params_struct())
             self._writer.line(f"const {params}& {names.params} = oxrt::launchParams<{params}>({names.thread});")
         if needs.hit_object and self._function.kind is not None:
-            self._writer.line(f"oxrt::HitObject {names.hit_object};")
+            self._writer.line(f"oxrt::HitObject {names.hit_object}({names.thread});")
 
     def _unread(self, local: Local) -> str:
         return "[[maybe_unused]] " if local.name in self._declarations.unread else ""

@@ -9,7 +9,7 @@ from optixc.codegen.names import Scope, string_literal
 from optixc.codegen.needs import REPORT, THROW, Options
 from optixc.codegen.program_classes import known_flags
 from optixc.ir.intrinsic_rows import ATOMIC_NAMES, INTRINSICS
-from optixc.ir.intrinsics import Effect, State
+from optixc.ir.intrinsics import Effect, Intrinsic, State
 from optixc.ir.nodes import (
     CallCallable,
     CallHelper,
@@ -29,6 +29,13 @@ from optixc.ir.types import FixedArray, Struct
 from optixc.ir.walk import expressions
 
 _FLAGS_ARGUMENT = 7
+
+
+def timed(row: Intrinsic, arguments: list[str], options: Options) -> list[str]:
+    """The arguments of a device function; the time of a ray is 0 in pipelines without motion."""
+    if options.uses_motion or row.state is not State.HIT_OBJECT:
+        return arguments
+    return ["0.0f" if parameter.name == "ray_time" else text for parameter, text in zip(row.parameters, arguments, strict=True)]
 
 
 class ScalarCalls:
@@ -113,6 +120,7 @@ class ScalarCalls:
             return self._throw(statement, arguments)
         if statement.name in ATOMIC_NAMES:
             return self._atomic(statement, arguments)
+        arguments = timed(row, arguments, self._options)
         hidden = {
             State.NONE: [],
             State.THREAD: [self._names.thread],

@@ -5,7 +5,7 @@ from __future__ import annotations
 from optixc.codegen.cpp_expr import AND, CHOICE, OR, PRIMARY, Code, within
 from optixc.codegen.cpp_signatures import FunctionNames, Signatures
 from optixc.codegen.cpp_types import TypeNames
-from optixc.codegen.needs import Options
+from optixc.codegen.needs import HIT_OBJECT_DATA, Options
 from optixc.ir.intrinsic_rows import INTRINSICS
 from optixc.ir.intrinsics import State
 from optixc.ir.nodes import ElementRef, Expr, HelperCall, IndexRef, IntrinsicCall, Literal, Local, Logical, Select
@@ -58,7 +58,8 @@ class ScalarDialect:
             State.RAY: [self._names.trace],
             State.HIT_OBJECT: [self._names.hit_object],
         }[row.state]
-        return Code(f"{row.cpp}({', '.join([*hidden, *arguments])})")
+        template = f"<{self._types.name(node.type)}>" if node.name == HIT_OBJECT_DATA else ""
+        return Code(f"{row.cpp}{template}({', '.join([*hidden, *arguments])})")
 
     def helper(self, node: HelperCall, arguments: tuple[str, ...]) -> Code:
         hidden = self._signatures.hidden_arguments(node.function, self._names)

@@ -64,7 +64,8 @@ class LaneFunction:
         self._options = options
         self._names = signatures.inner_names(clone.function)
         names = self._names
-        self._scope = Scope(taken=(*names.locals.values(), names.thread, names.trace, names.params, "mask", "lane", "one", "result"))
+        hidden = (names.thread, names.trace, names.params, names.hit_object)
+        self._scope = Scope(taken=(*names.locals.values(), *hidden, "mask", "lane", "one", "result"))
         self._dialect = LaneDialect(types, clones, clone, names, options, self._hoist)
         self._expressions = LaneExpressions(self._dialect)
         self._declarations = declarations(clone.function)
@@ -102,6 +103,8 @@ class LaneFunction:
             struct = next(e.type for e in expressions(self._function.body) if isinstance(e, ParamsRef))
             params = self._types.types.struct(struct)
             self._writer.line(f"const {params}& {names.params} = oxrt::launchParams<{params}>({names.thread});")
+        if needs.hit_object and self._function.kind is not None:
+            self._writer.line(f"oxrt::HitObjectLanes<LANES> {names.hit_object}({names.thread});")
         if self._clone.returns_apart:
             if not isinstance(self._function.result, Void):
                 self._writer.line(f"{self._types.name(self._function.result, True)} result{{}};")
@@ -400,6 +403,8 @@ class LaneFunction:
     def _trace(self, statement: Trace) -> None:
         for line in self._calls.trace(statement):
             self._writer.line(line, statement.span)
+        if statement.name == "trace" and self._signatures.needs(self._function.name).hit_object:
+            self._writer.line(f"oxrt::makeNopHitObject({self._names.hit_object}, {self._mask});", statement.span)
         self._leave_after(statement)
 
     def _leave_after(self, statement: CallHelper | CallIntrinsic | CallCallable | Trace) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from optixc.codegen.cpp_scalar_calls import timed
 from optixc.codegen.cpp_signatures import FunctionNames, Signatures
 from optixc.codegen.cpp_spmd_expr import PAYLOAD_SETTER, LaneExpressions
 from optixc.codegen.cpp_spmd_types import WideTypes
@@ -27,6 +28,9 @@ from optixc.ir.nodes import (
 )
 from optixc.ir.types import Struct
 from optixc.passes.uniformity import Clone
+
+HIT_OBJECT_SETTERS = frozenset({"make_nop_hit_object", "hit_object_set_sbt_record_index", "reorder"})
+"""What changes hit objects of all lanes at once; makers do it lane by lane."""
 
 _HANDLE_ARGUMENT, _FLAGS_ARGUMENT = 0, 7
 
@@ -125,6 +129,14 @@ class LaneCalls:
             return f"oxrt::setPayloadWord({self._names.trace}, {self._mask}, {index}, {arguments[0]})", False
         if row.effect is Effect.ENDS_PROGRAM:
             return f"{row.cpp}({self._names.trace}, {self._mask})", False
+        arguments = timed(row, arguments, self._options)
+        if statement.name in HIT_OBJECT_SETTERS:
+            wide = [self._expressions.wide(argument) for argument in statement.arguments]
+            return f"{row.cpp}({', '.join([self._names.hit_object, self._mask, *wide])})", False
+        if row.state is State.HIT_OBJECT:
+            lanes = ", ".join(["one", *(f"oxrt::inLane({argument}, lane)" for argument in arguments)])
+            making = f"[&](oxrt::HitObject& one, [[maybe_unused]] int lane) {{ {row.cpp}({lanes}); }}"
+            return f"oxrt::makeHitObjects({self._names.hit_object}, {self._mask}, {making})", False
         assert row.state in (State.NONE, State.THREAD), f"{statement.name} has no form over lanes"
         return self._lane_by_lane(statement, row)
 
@@ -186,6 +198,9 @@ class LaneCalls:
         flags = known_flags(statement)
         mask = self._mask
         heads: list[str] = []
+        hit_object = [] if statement.name == "trace" else [self._names.hit_object]
+        if statement.name == "invoke":
+            return [f"oxrt::invoke<{programs}>({', '.join([self._names.thread, mask, *hit_object, payload])});"]
         if flags is not None:
             arguments[_FLAGS_ARGUMENT] = f"oxrt::KnownFlags<{flags & 0xFFFF}>()"
         for position, name in ((_HANDLE_ARGUMENT, "handle"), (_FLAGS_ARGUMENT, "flags")):
@@ -193,7 +208,7 @@ class LaneCalls:
                 own = f"{name}Lanes"
                 heads.append(f"oxrt::eachValue({mask}, {arguments[position]}, [&](auto {name}, Mask {own}) {{")
                 arguments[position], mask = name, own
-        call = f"oxrt::trace<{programs}>({', '.join([self._names.thread, mask, *arguments, payload])});"
+        call = f"oxrt::{statement.name}<{programs}>({', '.join([self._names.thread, mask, *hit_object, *arguments, payload])});"
         return [*heads, call, *("});" for _ in heads)]
 
     def _argument(self, argument: Expr) -> str:

@@ -116,7 +116,8 @@ class Clones:
     def hidden_arguments(self, clone: Clone, names: FunctionNames, mask: str) -> list[str]:
         """Ray or thread, and the mask."""
         needs = self._signatures.needs(clone.function.name)
-        return [names.trace, mask] if needs.ray else [names.thread, mask]
+        hidden = [names.trace, mask] if needs.ray else [names.thread, mask]
+        return [*hidden, names.hit_object] if needs.hit_object else hidden
 
     def head(self, clone: Clone, names: FunctionNames) -> str:
         """Result, name and parameters."""
@@ -126,6 +127,8 @@ class Clones:
         needs = self._signatures.needs(function.name)
         hidden = f"Rays& {names.trace}" if needs.ray else f"Lanes& {names.thread}"
         parameters = [f"[[maybe_unused]] {hidden}", "[[maybe_unused]] Mask mask"]
+        if needs.hit_object and function.kind is None:
+            parameters.append(f"oxrt::HitObjectLanes<LANES>& {names.hit_object}")
         for parameter in function.parameters:
             text = self._parameter(parameter, parameter.local.name in clone.varying, parameter.local.name in assigned)
             parameters.append(f"{text} {names.locals[parameter.local.name]}" if parameter.local.name in used else text)

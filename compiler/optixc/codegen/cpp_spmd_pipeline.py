@@ -22,7 +22,7 @@ from optixc.codegen.needs import EXCEPTION_FLAG_STACK_OVERFLOW, REPORT, options_
 from optixc.codegen.program_classes import ProgramClass, callables_nest, payload_of, reachable_functions
 from optixc.ir.intrinsic_rows import INTRINSICS
 from optixc.ir.intrinsics import State
-from optixc.ir.nodes import CallCallable, CallIntrinsic, Function, IntrinsicCall, ParameterRole, Pipeline, Trace
+from optixc.ir.nodes import CallCallable, CallIntrinsic, Function, IntrinsicCall, ParameterRole, Pipeline
 from optixc.ir.programs import ProgramKind
 from optixc.ir.types import Struct, Void
 from optixc.ir.walk import expressions, statements
@@ -39,12 +39,6 @@ _ALSO_SCALAR = (ProgramKind.ANYHIT, ProgramKind.INTERSECTION)
 
 def spmd_obstacle(pipeline: Pipeline) -> str | None:
     """What keeps the pipeline from running over lanes, in the words of the report; None if nothing does."""
-    for function in (*pipeline.programs, *pipeline.helpers):
-        names = [e.name for e in expressions(function.body) if isinstance(e, IntrinsicCall)]
-        names += [statement.name for statement in statements(function.body) if isinstance(statement, CallIntrinsic)]
-        traverses = any(isinstance(statement, Trace) and statement.name != "trace" for statement in statements(function.body))
-        if traverses or any(INTRINSICS[name].state is State.HIT_OBJECT for name in names):
-            return "hit objects"
     for program in pipeline.programs:
         if program.kind in _ALSO_SCALAR:
             reached = (s for f in reachable_functions(pipeline, program) for s in statements(f.body))
@@ -67,7 +61,7 @@ class SpmdFile(PipelineFile):
     def text(self) -> str:
         order = self._functions_over_lanes()
         self._head()
-        self._writer.line("#include <oxrt/lanes_trace.h>")
+        self._writer.line(f"#include <oxrt/{'lanes_hit_object' if self._features.has('hit objects') else 'lanes_trace'}.h>")
         self._writer.line()
         self._writer.line("namespace {")
         self._writer.line()

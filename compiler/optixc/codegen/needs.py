@@ -35,6 +35,7 @@ EXCEPTION_FLAG_TRACE_DEPTH = 2
 EXCEPTION_FLAG_USER = 4
 REPORT = "report_intersection"
 THROW = "throw_exception"
+HIT_OBJECT_DATA = "hit_object_get_sbt_data"
 
 
 @dataclass(frozen=True)
@@ -63,6 +64,7 @@ class Options:
     is_checked: bool
     user_exceptions: bool
     traces_throw: bool
+    uses_motion: bool = False
 
 
 def options_of(pipeline: Pipeline) -> Options:
@@ -71,6 +73,7 @@ def options_of(pipeline: Pipeline) -> Options:
     return Options(
         is_checked=options.debug or options.validation,
         user_exceptions=throwing,
+        uses_motion=options.uses_motion_blur,
         traces_throw=throwing or bool(options.exception_flags & (EXCEPTION_FLAG_TRACE_DEPTH | EXCEPTION_FLAG_STACK_OVERFLOW)),
     )
 
@@ -91,6 +94,10 @@ def needs_of_pipeline(pipeline: Pipeline) -> dict[str, Needs]:
             if joined != needs[function.name]:
                 needs[function.name] = joined
                 changed = True
+    for program in pipeline.programs:
+        if needs[program.name].hit_object:
+            # The hit object is a local of the program, and knows its thread.
+            needs[program.name] = replace(needs[program.name], thread=True, names_thread=True)
     return needs
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 
 from optixc.ir import types as t
+from optixc.ir.intrinsic_rows_hit_object import TRAVERSE_DATA
 
 _ELEMENTS = {
     "bool": t.BOOL,
@@ -50,6 +51,7 @@ TYPE_NAMES: dict[str, t.Type] = {
     **MATRIX_TYPES,
     "Traversable": t.TRAVERSABLE,
     "Texture": t.TEXTURE,
+    "TraverseData": TRAVERSE_DATA,
 }
 
 PYTHON_TYPE_NAMES = frozenset({"bool", "int", "float"})

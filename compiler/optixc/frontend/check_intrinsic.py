@@ -22,12 +22,15 @@ def check_intrinsic(c: Context, node: ast.Call, name: str) -> ExprInfo:
     """A call of `ox.name`."""
     if name == "pow" and len(node.args) == 3:
         return c.error("OX305", node, "pow() takes two arguments", "write (x ** y) % z")
-    row = _choose_row(node, name)
+    if name in OVERLOADS:
+        check_written(c, node)
+    row = _choose_row(c, node, name)
     if name in ("min", "max") and len(node.args) > 2:
         return c.error("OX305", node, f"{name}() takes two arguments, here are {len(node.args)}", f"write {name}(a, {name}(b, c))")
     optional = [parameter.name for parameter in row.parameters if parameter.default is not None]
     bound = bind_arguments(c, node, name, [parameter.name for parameter in row.parameters], optional)
-    check_written(c, node)
+    if name not in OVERLOADS:
+        check_written(c, node)
     if bound is None or any(isinstance(c.info(argument).type, Invalid) for argument in bound if argument is not None):
         require_row(c, row, name, node)
         return ExprInfo(INVALID)
@@ -69,11 +72,30 @@ def require_row(c: Context, row: Intrinsic, name: str, node: ast.AST) -> None:
         c.require(f"{name}()", row.allowed, node)
 
 
-def _choose_row(node: ast.Call, name: str) -> Intrinsic:
-    """Of several parameter lists the one with as many parameters as the call has arguments."""
+def _choose_row(c: Context, node: ast.Call, name: str) -> Intrinsic:
+    """Of several parameter lists the one that takes as many arguments as the call has, and fixed arrays where they are."""
     rows = OVERLOADS.get(name, (INTRINSICS[name],))
-    count = len(node.args) + len(node.keywords)
-    return next((row for row in rows if len(row.parameters) == count), rows[0])
+    if any(isinstance(argument, ast.Starred) for argument in node.args):
+        return rows[0]
+    given = {keyword.arg for keyword in node.keywords}
+    count = len(node.args) + len(given)
+
+    def fits(row: Intrinsic) -> bool:
+        required = sum(parameter.default is None for parameter in row.parameters)
+        return required <= count <= len(row.parameters) and given <= {parameter.name for parameter in row.parameters}
+
+    fitting = [row for row in rows if fits(row)]
+    if len(fitting) < 2:
+        return fitting[0] if fitting else rows[0]
+    return next((row for row in fitting if _arrays_fit(c, node, row)), fitting[0])
+
+
+def _arrays_fit(c: Context, node: ast.Call, row: Intrinsic) -> bool:
+    """Whether the arguments by position are fixed arrays where the row wants handles, and only there."""
+    return all(
+        isinstance(c.info(argument).type, t.FixedArray) == (parameter.type is Generic.HANDLES or isinstance(parameter.type, t.FixedArray))
+        for parameter, argument in zip(row.parameters, node.args, strict=False)
+    )
 
 
 def _convert_arguments(c: Context, node: ast.Call, row: Intrinsic, bound: list[ast.expr | None]) -> t.Type | None:
@@ -81,7 +103,7 @@ def _convert_arguments(c: Context, node: ast.Call, row: Intrinsic, bound: list[a
     generic = [
         (argument, parameter.type)
         for parameter, argument in zip(row.parameters, bound, strict=True)
-        if argument is not None and isinstance(parameter.type, Generic) and parameter.type is not Generic.ELEMENT
+        if argument is not None and isinstance(parameter.type, Generic) and parameter.type not in (Generic.ELEMENT, Generic.HANDLES)
     ]
     joined: t.Type | None = None
     if generic:
@@ -95,6 +117,12 @@ def _convert_arguments(c: Context, node: ast.Call, row: Intrinsic, bound: list[a
         what = f"argument `{parameter.name}`"
         if not isinstance(parameter.type, Generic):
             if not c.coerce(argument, parameter.type, what):
+                return None
+        elif parameter.type is Generic.HANDLES:
+            type_ = c.type_of(argument)
+            if not (isinstance(type_, t.FixedArray) and type_.element == t.TRAVERSABLE):
+                c.error("OX302", argument, f"{what} must be a fixed array of traversables, this is {describe(type_)}",
+                        "fill an ox.FixedArray[ox.Traversable, N]() with get_transform_list_handle(i)")
                 return None
         elif parameter.type is Generic.ELEMENT:
             if element is None or not c.coerce(argument, element, what):

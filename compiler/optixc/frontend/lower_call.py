@@ -180,7 +180,7 @@ def _element(value: Expr, element: t.Scalar, low: FunctionLowering, node: ast.AS
 def _intrinsic(low: FunctionLowering, node: ast.Call, use: IntrinsicUse, block: Block) -> Expr:
     values = _in_source_order(low, node, use.arguments, block)
     type_ = low.info(node).type
-    assert isinstance(type_, t.Scalar | t.Vector | t.Matrix | t.Tuple | t.Traversable | t.Struct | t.Void)
+    assert isinstance(type_, t.Scalar | t.Vector | t.Matrix | t.Tuple | t.Traversable | t.Struct | t.FixedArray | t.Void)
     if use.row.effect is Effect.PURE:
         return IntrinsicCall(use.row.name, tuple(values), type_, low.span(node))
     return _effect(low, node, use.row.name, values, type_, block)

@@ -61,6 +61,7 @@ if TYPE_CHECKING:
     FixedArray = Annotated
     Traversable = Any
     Texture = Any
+    TraverseData = Any
 else:
 
     class Array:
@@ -95,6 +96,8 @@ else:
 
     class Texture:
         """A 64-bit handle of a texture."""
+
+    TraverseData = FixedArray[scalars.uint32, 20]
 
 
 _PYTHON_SCALARS = {bool: "bool", int: "int32", float: "float32"}

@@ -16,6 +16,7 @@ from optixc.frontend.checked import FunctionInstance
 from optixc.host import library
 from optixc.interpret import native, values
 from optixc.interpret.frames import EndProgram, Frame, Thrown, fill, registers, update, word_types
+from optixc.interpret.hit_objects import maker
 from optixc.interpret.rewrite import Functions
 from optixc.ir import types as t
 from optixc.ir.intrinsics import Intrinsic
@@ -278,8 +279,7 @@ class Machine:
                 return lambda: self._leave_candidate(leave)
             case "set_payload_types" | "reorder":
                 return lambda *_: None
-        types = tuple(parameter.type for parameter in row.parameters)
-        bound = native.bind(row.name, types, t.VOID)  # type: ignore[arg-type]
+        bound = maker(row, bool(self.uses_motion))
         return lambda *arguments: bound(self.hit_object_state(), *arguments)
 
     def _set_payload_word(self, index: int, word: int) -> None:

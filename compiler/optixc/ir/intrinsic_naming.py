@@ -45,14 +45,15 @@ def device(
     allowed: frozenset[ProgramKind] = ALL_PROGRAMS,
     name: str = "",
     overload_of: str = "",
+    cpp: str = "",
 ) -> Intrinsic:
-    """A row of an OptiX function, named by the rule unless `name` says otherwise."""
+    """A row of an OptiX function, named by the rule unless `name` and `cpp` say otherwise."""
     return Intrinsic(
         name=name or snake_name(optix),
         optix=optix,
         parameters=parameters_of(parameters),
         result=result,
-        cpp=cpp_name(optix),
+        cpp=cpp or cpp_name(optix),
         doc=doc,
         effect=effect,
         state=state,

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from optixc.ir import types as t
-from optixc.ir.intrinsic_naming import device
+from optixc.ir.intrinsic_naming import Parameters, device
 from optixc.ir.intrinsic_rows_hit import MATRIX, TRANSFORM_FUNCTIONS, VERTEX_FUNCTIONS
 from optixc.ir.intrinsic_rows_ray import ATTRIBUTE_WORDS, TRACERS, TRAVERSERS
 from optixc.ir.intrinsics import Effect, Generic, Intrinsic, State
@@ -37,7 +37,72 @@ _GETTERS: tuple[tuple[str, t.Type, str], ...] = (
     *((f"Get{function}", result, doc) for function, result, doc in VERTEX_FUNCTIONS),
 )
 
+TRAVERSE_DATA = t.FixedArray(t.UINT32, 20)
+"""A hit as words that can be stored: `ox.TraverseData`."""
+
+_RAY_OF_HIT = (("handle", t.TRAVERSABLE), ("origin", t.FLOAT3), ("direction", t.FLOAT3), ("tmin", t.FLOAT32))
+_TRANSFORMS = (("transforms", Generic.HANDLES), ("num_transforms", t.UINT32))
+_FORMULA = (("sbt_offset", t.UINT32), ("sbt_stride", t.UINT32))
+_ATTRIBUTES: Parameters = tuple((f"attribute_{i}", t.UINT32, 0) for i in range(ATTRIBUTE_WORDS))
+_NUMBERS_OF_HIT: Parameters = (
+    ("sbt_gas_index", t.UINT32),
+    ("primitive_index", t.UINT32),
+    ("hit_kind", t.UINT32),
+    *_ATTRIBUTES,
+)
+_DISTANCE_AND_TIME = (("tmax", t.FLOAT32), ("ray_time", t.FLOAT32))
+
+
+def _maker(optix: str, parameters: Parameters, doc: str, name: str = "", overload_of: str = "") -> Intrinsic:
+    return device(
+        optix,
+        parameters,
+        t.VOID,
+        doc,
+        effect=Effect.WRITES,
+        state=State.HIT_OBJECT,
+        allowed=TRACERS,
+        name=name,
+        overload_of=overload_of,
+    )
+
+
+_HIT_MAKERS: tuple[Intrinsic, ...] = (
+    _maker(
+        "optixMakeHitObject",
+        (*_RAY_OF_HIT, ("ray_time", t.FLOAT32), ("ray_flags", t.UINT32), ("traverse_data", TRAVERSE_DATA), *_TRANSFORMS),
+        "Make the outgoing hit object the hit that the traverse data of an earlier one tell, below these transforms.",
+    ),
+    _maker(
+        "optixMakeHitObject",
+        (*_RAY_OF_HIT, *_DISTANCE_AND_TIME, *_FORMULA, ("instance_index", t.UINT32), *_NUMBERS_OF_HIT),
+        "Make the outgoing hit object a hit at tmax of this primitive; its record by the formula (OptiX 8).",
+        name="make_hit_object_of_instance",
+        overload_of="make_hit_object",
+    ),
+    _maker(
+        "optixMakeHitObject",
+        (*_RAY_OF_HIT, *_DISTANCE_AND_TIME, *_FORMULA, ("instance_index", t.UINT32), *_TRANSFORMS, *_NUMBERS_OF_HIT),
+        "Make the outgoing hit object a hit at tmax of this primitive below these transforms; its record by the formula (OptiX 8).",
+        name="make_hit_object_below_transforms",
+        overload_of="make_hit_object",
+    ),
+    _maker(
+        "optixMakeHitObjectWithRecord",
+        (
+            *_RAY_OF_HIT,
+            *_DISTANCE_AND_TIME,
+            ("sbt_record_index", t.UINT32),
+            ("instance_index", t.UINT32),
+            *_TRANSFORMS,
+            *_NUMBERS_OF_HIT,
+        ),
+        "Make the outgoing hit object a hit at tmax of this primitive with this record (OptiX 8).",
+    ),
+)
+
 _MAKERS: tuple[Intrinsic, ...] = (
+    *_HIT_MAKERS,
     device(
         "optixMakeMissHitObject",
         (
@@ -101,6 +166,14 @@ ROWS: tuple[Intrinsic, ...] = (
         for function in TRANSFORM_FUNCTIONS
     ),
     device(
+        "optixHitObjectGetTraverseData",
+        (),
+        TRAVERSE_DATA,
+        "The hit as words that make_hit_object takes.",
+        state=State.HIT_OBJECT,
+        allowed=TRAVERSERS,
+    ),
+    device(
         "optixHitObjectGetTransformListHandle",
         (("index", t.UINT32),),
         t.TRAVERSABLE,
@@ -124,6 +197,7 @@ ROWS: tuple[Intrinsic, ...] = (
         state=State.HIT_OBJECT,
         allowed=TRAVERSERS,
         name="hit_object_get_sbt_data",
+        cpp="oxrt::hitObjectGetSbtData",
     ),
     *_MAKERS,
 )

@@ -42,6 +42,7 @@ class Generic(Enum):
     SAME = "the type of the first argument"
     ARRAY = "an array of 32 or 64 bit numbers"
     RECORD_STRUCT = "a struct class, given by name"
+    HANDLES = "a fixed array of traversables"
 
 
 ParameterType = Type | Generic

@@ -15,8 +15,11 @@ inline namespace OXRT_ISA {
 struct HitObject {
     enum class Kind : uint32_t { Nop, Hit, Miss } kind = Kind::Nop;
     uint32_t recordIndex = 0;
+    OxrtThread* thread;
     Ray ray;
     GraphPath path;
+
+    OXRT_INLINE explicit HitObject(OxrtThread& owner) : thread(&owner) {}
 };
 
 OXRT_INLINE bool hitObjectIsHit(const HitObject& object) { return object.kind == HitObject::Kind::Hit; }
@@ -64,8 +67,13 @@ template <class Programs> OXRT_INLINE void invoke(OxrtThread& thread, HitObject&
     } else if constexpr (Programs::hasClosestHit) {
         ray.recordIndex = object.recordIndex;
         ray.record = findRecord(launch, launch.hitgroupRecords, launch.hitgroupStride, launch.hitgroupCount, object.recordIndex);
-        if (ray.record && !(ray.flags & RAY_DISABLE_CLOSESTHIT))
+        if constexpr (Programs::isValidated)
+            placeOfTrace() = place;
+        if (ray.flags & RAY_DISABLE_CLOSESTHIT) {
+        } else if (ray.record)
             Programs::closestHit(ray, payload, *ray.record);
+        else if (Programs::isValidated && ray.recordIndex >= launch.hitgroupCount)
+            fault(thread, OXRT_FAULT_HIT_SBT, "the hit object needs a record behind the end of the hit group records", place);
     }
     leaveTrace<Programs>(thread);
 }
@@ -73,6 +81,7 @@ template <class Programs> OXRT_INLINE void invoke(OxrtThread& thread, HitObject&
 OXRT_INLINE void makeMissHitObject(HitObject& object, uint32_t missIndex, const float3& origin, const float3& direction, float tmin, float tmax,
                                    float time, uint32_t flags) {
     Ray& ray = object.ray;
+    ray.thread = object.thread;
     ray.origin = origin;
     ray.direction = direction;
     ray.tmin = tmin;
@@ -138,6 +147,16 @@ OXRT_INLINE float3 hitObjectGetRibbonNormal(const HitObject& object, const float
     return hitObjectIsHit(object) ? getRibbonNormal(object.ray, parameters) : float3{};
 }
 OXRT_INLINE uint32_t hitObjectGetSbtRecordIndex(const HitObject& object) { return hitObjectIsNop(object) ? 0 : object.recordIndex; }
+/* The data of the record that invoke would use; zero where there is none. */
+template <class Record> OXRT_INLINE Record hitObjectGetSbtData(const HitObject& object) {
+    const OxrtLaunch& launch = *object.thread->launch;
+    const OxrtRecordHeader* record = nullptr;
+    if (hitObjectIsHit(object))
+        record = findRecord(launch, launch.hitgroupRecords, launch.hitgroupStride, launch.hitgroupCount, object.recordIndex);
+    else if (hitObjectIsMiss(object))
+        record = findRecord(launch, launch.missRecords, launch.missStride, launch.missCount, object.recordIndex);
+    return record ? recordData<Record>(*record) : Record{};
+}
 OXRT_INLINE constexpr uint32_t hitObjectGetClusterId(const HitObject&) { return ~0u; }
 OXRT_INLINE float3x4 hitObjectGetObjectToWorldTransformMatrix(const HitObject& object) {
     return hitObjectIsHit(object) ? getObjectToWorldTransformMatrix(object.ray) : identityTransform();

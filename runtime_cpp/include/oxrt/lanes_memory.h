@@ -279,6 +279,12 @@ template <class T, int W, int R, int C> OXRT_INLINE Matrix<T, R, C> inLane(const
         result[i] = inLane(value[i], lane);
     return result;
 }
+template <class T, int W, int SIZE> OXRT_INLINE FixedArray<T, SIZE> inLane(const FixedArray<Lanes<T, W>, SIZE>& value, int lane) {
+    FixedArray<T, SIZE> result;
+    for (int i = 0; i < SIZE; ++i)
+        result.items[i] = inLane(value.items[i], lane);
+    return result;
+}
 template <class T, int RANK, int W> OXRT_INLINE Array<T, RANK> inLane(const VaryingArray<Array<T, RANK>, W>& value, int lane) {
     Array<T, RANK> result;
     result.data = reinterpret_cast<T*>(value.data[lane]);

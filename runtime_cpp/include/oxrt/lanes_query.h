@@ -251,6 +251,11 @@ template <int W> OXRT_INLINE void scalarRay(Ray& one, const RayLanes<W>& ray, vo
     one.missIndex = ray.missIndex[lane];
 }
 
+/* For hits whose kind of primitive nothing says beforehand. */
+struct HitsOfAllKinds {
+    static constexpr bool hasIntersection = true;
+};
+
 /* Enters the closest hit of one lane. */
 template <class Scalar, int WORDS, int W> OXRT_INLINE void enterScalarHit(RayLanes<W>& ray, const Ray& one, int lane) {
     auto& hit = ray.packet.hit;

@@ -380,7 +380,10 @@ template <int W> OXRT_INLINE Wide<TriangleVertices, W> getTriangleVertexData(con
     if (ray.root->needs & OXRT_SCENE_HAS_MOTION)
         return mapHits(ray, [](const Ray& one, int) { return getTriangleVertexData(one); });
     const Lanes<uint32_t, W> primitive = localPrimitive(ray);
-    const Lanes<bool, W> mask = ray.active & (geometryType(ray) == uint32_t(OXRT_PRIMITIVE_TRIANGLE));
+    constexpr uint32_t others = OXRT_SCENE_HAS_CUSTOM | OXRT_SCENE_HAS_CURVES | OXRT_SCENE_HAS_SPHERES;
+    Lanes<bool, W> mask = ray.active;
+    if (ray.root->needs & others)
+        mask &= geometryType(ray) == uint32_t(OXRT_PRIMITIVE_TRIANGLE);
     Wide<float3, W> corners[3];
     if (ray.commonGeometry) {
         const WordPlaces<W> indices = placesIn<uint3, W>(reinterpret_cast<const uint3*>(ray.commonGeometry->indices), primitive);

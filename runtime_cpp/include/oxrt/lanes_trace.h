@@ -78,34 +78,26 @@ template <class Scalar, int W> OXRT_INLINE void checkRays(const RayLanes<W>& ray
     });
 }
 
-/* The trace of the masked lanes. The handle and the flags are the same for all of them. */
-template <class Programs, class Flags, int W>
-OXRT_INLINE void trace(LanesThread<W>& thread, Lanes<bool, W> mask, uint64_t handle, const Wide<float3, W>& origin,
-                       const Wide<float3, W>& direction, Wide<float, W> tmin, Wide<float, W> tmax, Wide<float, W> time, Wide<uint32_t, W> visibility, Flags flags,
-                       Wide<uint32_t, W> sbtOffset, Wide<uint32_t, W> sbtStride, Wide<uint32_t, W> missIndex,
-                       typename Programs::Payload& payload, Place place = Place::current()) {
-    using Scalar = typename Programs::Scalar;
-    if (none(mask))
-        return;
-    OxrtThread& one = Scalar::countsDepth ? thread.atLane(firstLane(mask)) : *thread.thread;
-    if (!enterTrace<Scalar>(one, place)) {
-        if constexpr (Scalar::depthThrows || Scalar::overflowThrows)
-            takeExceptions(thread, mask);
-        return;
-    }
-    typename Packet<W>::RayHit rays;
-    RayLanes<W> ray(rays);
-    ray.thread = &thread;
+/* Payload registers by number, where programs use them. */
+template <class Programs, int W> OXRT_INLINE void setPayloadWords(RayLanes<W>& ray, typename Programs::Payload& payload) {
     if constexpr (Programs::usesPayloadWords) {
         ray.payload = &payload;
-        ray.readWord = readPayloadWord<typename Scalar::Payload, W>;
-        ray.writeWord = writePayloadWord<typename Scalar::Payload, W>;
+        ray.readWord = readPayloadWord<typename Programs::Scalar::Payload, W>;
+        ray.writeWord = writePayloadWord<typename Programs::Scalar::Payload, W>;
     }
+}
+
+/* Enters what the caller of a trace gave. The handle and the flags are the same for all lanes. */
+template <class Programs, int W>
+OXRT_INLINE void setRays(RayLanes<W>& ray, LanesThread<W>& thread, Lanes<bool, W> mask, uint64_t handle, const Wide<float3, W>& origin,
+                         const Wide<float3, W>& direction, Wide<float, W> tmin, Wide<float, W> tmax, Wide<float, W> time,
+                         Wide<uint32_t, W> visibility, uint32_t flags, Wide<uint32_t, W> sbtOffset, Wide<uint32_t, W> sbtStride,
+                         Wide<uint32_t, W> missIndex, typename Programs::Payload& payload, Place place) {
+    using Scalar = typename Programs::Scalar;
+    ray.thread = &thread;
+    setPayloadWords<Programs>(ray, payload);
     ray.root = findTraversable(*thread.thread->launch, handle);
-    GraphPath paths[W];
-    if (ray.root && __builtin_expect(isGraph(*ray.root), 0))
-        ray.paths = paths;
-    auto& packet = rays.ray;
+    auto& packet = ray.packet.ray;
     setPacket(packet.org_x, origin.x);
     setPacket(packet.org_y, origin.y);
     setPacket(packet.org_z, origin.z);
@@ -127,9 +119,40 @@ OXRT_INLINE void trace(LanesThread<W>& thread, Lanes<bool, W> mask, uint64_t han
         placeOfTrace() = place;
         checkRays<Scalar>(ray, mask, handle, place);
     }
+}
+
+/* Whether the rays go to Embree together. */
+template <class Programs, bool ANY, int W>
+OXRT_INLINE Bundle bundleFor(const RayLanes<W>& ray, Lanes<bool, W> mask, const Wide<float3, W>& origin, const Wide<float3, W>& direction,
+                             Wide<float, W> tmax) {
     // coherent packets offer a custom primitive to lanes that miss its box, which costs more than they save
-    const bool callsIntersection = Scalar::hasIntersection && ray.root && (ray.root->needs & OXRT_SCENE_HAS_CUSTOM);
-    const Bundle bundle = callsIntersection ? Bundle::Apart : bundleOf<endsAnywhere<Programs, Flags>>(mask, origin, direction, tmax);
+    const bool callsIntersection = Programs::Scalar::hasIntersection && ray.root && (ray.root->needs & OXRT_SCENE_HAS_CUSTOM);
+    return callsIntersection ? Bundle::Apart : bundleOf<ANY>(mask, origin, direction, tmax);
+}
+
+/* The trace of the masked lanes. The handle and the flags are the same for all of them. */
+template <class Programs, class Flags, int W>
+OXRT_INLINE void trace(LanesThread<W>& thread, Lanes<bool, W> mask, uint64_t handle, const Wide<float3, W>& origin,
+                       const Wide<float3, W>& direction, Wide<float, W> tmin, Wide<float, W> tmax, Wide<float, W> time, Wide<uint32_t, W> visibility, Flags flags,
+                       Wide<uint32_t, W> sbtOffset, Wide<uint32_t, W> sbtStride, Wide<uint32_t, W> missIndex,
+                       typename Programs::Payload& payload, Place place = Place::current()) {
+    using Scalar = typename Programs::Scalar;
+    if (none(mask))
+        return;
+    OxrtThread& one = Scalar::countsDepth ? thread.atLane(firstLane(mask)) : *thread.thread;
+    if (!enterTrace<Scalar>(one, place)) {
+        if constexpr (Scalar::depthThrows || Scalar::overflowThrows)
+            takeExceptions(thread, mask);
+        return;
+    }
+    typename Packet<W>::RayHit rays;
+    RayLanes<W> ray(rays);
+    setRays<Programs>(ray, thread, mask, handle, origin, direction, tmin, tmax, time, visibility, flags, sbtOffset, sbtStride, missIndex, payload,
+                      place);
+    GraphPath paths[W];
+    if (ray.root && __builtin_expect(isGraph(*ray.root), 0))
+        ray.paths = paths;
+    const Bundle bundle = bundleFor<Programs, endsAnywhere<Programs, Flags>>(ray, mask, origin, direction, tmax);
     traceNow<Programs, Flags>(ray, mask, payload, bundle, place);
     leaveTrace<Scalar>(*thread.thread);
 }

@@ -190,6 +190,23 @@ def __raygen__hit_objects():
         dump(60)
         ox.invoke(payload=words)
         dump(61)
+    elif mode == 7:
+        look(params.scene, at, 0, 0, 0, words)
+        data = ox.hit_object_get_traverse_data()
+        transforms = ox.FixedArray[Traversable, 4]()
+        count = ox.hit_object_get_transform_list_size()
+        for i in range(count):
+            transforms[i] = ox.hit_object_get_transform_list_handle(i)
+        dump(70)
+        ox.make_nop_hit_object()
+        dump(71)
+        ox.make_hit_object(params.scene, at, down, 0.5, 0.25, 0, data, transforms, count)
+        dump(72)
+        ox.invoke(payload=words)
+        dump(73)
+        ox.make_hit_object(params.scene, float3(7.0, 8.0, 9.0), float3(0.0, 1.0, 0.0), 0.0625, 0.75, 4, data, transforms, count)
+        dump(74)
+        ox.invoke(payload=words)
     elif mode == 8:
         look(params.scene, at, 8, 0, 0, words)
         dump(80)

@@ -3,7 +3,7 @@
    hit objects: shader.py:30
 */
 #include <oxrt/device.h>
-#include <oxrt/device_hit_object.h>
+#include <oxrt/device_make_hit.h>
 
 namespace {
 
@@ -36,7 +36,7 @@ bool is_near(oxrt::HitObject& hitObject) {
 #line 27 "shader.py"
 void raygen_main(OxrtThread& thread) {
     const Params& params = oxrt::launchParams<Params>(thread);
-    oxrt::HitObject hitObject;
+    oxrt::HitObject hitObject(thread);
 #line 28 "shader.py"
     uint32_t i = oxrt::getLaunchIndex(thread).x;
     Radiance ray = Radiance{oxrt::float3(0.0f)};
