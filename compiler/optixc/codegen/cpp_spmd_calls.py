@@ -117,7 +117,7 @@ class LaneCalls:
         call that does nothing in this pipeline."""
         row = INTRINSICS[statement.name]
         arguments = [self._expressions.text(argument) for argument in statement.arguments]
-        if statement.name == THROW and not self._options.user_exceptions:
+        if statement.name == "set_payload_types" or (statement.name == THROW and not self._options.user_exceptions):
             return None
         if statement.name == THROW:
             place = string_literal(f"{statement.span.path}:{statement.span.line}")
