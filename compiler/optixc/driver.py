@@ -145,7 +145,7 @@ def build(units: Sequence[Unit], names: Sequence[str], options: CompileOptions, 
 
         def produce(output: Path) -> None:
             if len(written) == 1:
-                manifest["frames"] = toolchain.compile_shared(emitted.text, output, compiler, plan)
+                manifest["frames"] = toolchain.compile_shared(emitted.text, output, compiler, plan, store.memory)
             else:
                 manifest["frames"] = toolchain.compile_variants([(one.text, how) for one, how in written], output, compiler)
 

@@ -12,13 +12,14 @@ import shutil
 import subprocess
 import tempfile
 from collections.abc import Iterator, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 
 from optixc.enums_program import Result
 from optixc.errors import InvalidValueError, OptixError
-from optixc.signed_json import signed, unsigned
+from optixc.signed_json import digest, signed, unsigned
 from optixc.stack_usage import read_frames
 
 MIN_CLANG = 16
@@ -40,6 +41,8 @@ _BASE_FLAGS = (
 _FAST_MATH_FLAGS = ("-ffp-contract=fast", "-DOXRT_FAST_MATH")
 _LOG_LINES = 30
 _SYMBOL = "oxrt_pipeline_v1"
+_PRECOMPILED = "headers"
+_MOST_PRECOMPILED = 8
 _QUIET = ("-w",)
 """Unknown pragmas and attributes of one compiler must not speak to users of the other; that generated code is clean is tested."""
 
@@ -146,19 +149,64 @@ def identify(path: str, memory: Path | None = None) -> Compiler | None:
     return Compiler(path, real, status.st_size, status.st_mtime_ns, kind, tuple(version)) if kind else None
 
 
-def compile_shared(text: str, output: Path, compiler: Compiler, build: Build) -> dict[str, int]:
+def compile_shared(text: str, output: Path, compiler: Compiler, build: Build, memory: Path | None = None) -> dict[str, int]:
     """Compiles C++ text to a shared object and gives the bytes of each function's frame; `output` appears whole or not at all.
 
-    With `debug` the text stays beside it.
+    With `debug` the text stays beside it. Precompiled headers are kept in the folder `memory`, if there is one.
     """
     with tempfile.TemporaryDirectory(prefix="optixc-", dir=output.parent) as folder:
         source = output.with_suffix(".cpp") if build.debug else Path(folder) / "pipeline.cpp"
         source.write_text(text)
         made = Path(folder) / "pipeline.so"
-        _run(compiler, [*build.flags(), *_QUIET, "-fstack-usage", "-shared", str(source), "-o", str(made), "-lm"])
+        arguments = [*build.flags(), *_QUIET, "-fstack-usage", "-shared", str(source), "-o", str(made), "-lm"]
+        headers = _precompiled_headers(text, compiler, build, memory) if memory is not None else None
+        try:
+            _run(compiler, [*arguments, *(["-include-pch", str(headers)] if headers is not None else [])])
+        except ToolchainError:
+            if headers is None:
+                raise
+            # Another process may have dropped the file meanwhile.
+            _run(compiler, arguments)
         frames = read_frames(made.parent)
         os.replace(made, output)
         return frames
+
+
+def _precompiled_headers(text: str, compiler: Compiler, build: Build, memory: Path) -> Path | None:
+    """The headers that the text includes, parsed once for all pipelines with these flags: clang reads them in a tenth of the time.
+
+    None for g++, which gains nothing, and where the folder cannot be written.
+    """
+    includes = re.findall(r"^#include <oxrt/.*>$", text, re.MULTILINE)
+    if compiler.kind != "clang" or not includes:
+        return None
+    # clang refuses headers that are newer than what it made of them, so their times are part of the name.
+    stamps = [f"{path.name}:{path.stat().st_size}:{path.stat().st_mtime_ns}" for path in sorted((build.include / "oxrt").glob("*.h"))]
+    folder = memory / _PRECOMPILED
+    source = folder / f"{digest(compiler.identity, *build.flags(), *includes, *stamps)}.h"
+    made, checksum = source.with_suffix(".pch"), source.with_suffix(".sum")
+    with suppress(OSError, UnicodeDecodeError):
+        # clang would believe damaged bytes.
+        if checksum.read_text() == digest(made.read_bytes()):
+            return made
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        oldest_first = sorted(folder.glob("*.pch"), key=lambda path: path.stat().st_mtime_ns)
+        for old in oldest_first[: -_MOST_PRECOMPILED + 1]:
+            for suffix in (".pch", ".sum", ".h"):
+                old.with_suffix(suffix).unlink(missing_ok=True)
+        source.write_text("\n".join(includes) + "\n")
+        with tempfile.TemporaryDirectory(prefix="new-", dir=folder) as scratch:
+            fresh = Path(scratch) / made.name
+            flags = [*build.flags(), *_QUIET, "-fpch-instantiate-templates", "-x", "c++-header"]
+            _run(compiler, [*flags, str(source), "-o", str(fresh)])
+            stated = Path(scratch) / checksum.name
+            stated.write_text(digest(fresh.read_bytes()))
+            os.replace(fresh, made)
+            os.replace(stated, checksum)
+    except (OSError, ToolchainError):
+        return None
+    return made
 
 
 def compile_variants(variants: Sequence[tuple[str, Build]], output: Path, compiler: Compiler) -> dict[str, int]:

@@ -129,7 +129,7 @@ def filled(tmp_path_factory: pytest.TempPathFactory) -> tuple[dict[str, bytes], 
     """The files of a cache that holds one pipeline, and its result."""
     folder = tmp_path_factory.mktemp("filled")
     value, _ = run(folder)
-    return {path.name: path.read_bytes() for path in folder.iterdir()}, value
+    return {path.name: path.read_bytes() for path in folder.iterdir() if path.is_file()}, value
 
 
 @pytest.mark.parametrize("damage", DAMAGES)

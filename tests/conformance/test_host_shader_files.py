@@ -164,7 +164,7 @@ def test_a_damaged_cache_is_compiled_anew(tmp_path: Path) -> None:
     cache = tmp_path / "cache"
     path = shader(tmp_path)
     filled(ox.DeviceContext(cache_dir=cache), path)
-    for file in cache.iterdir():
+    for file in (path for path in cache.rglob("*") if path.is_file()):
         file.write_bytes(file.read_bytes()[: file.stat().st_size // 2])
     values, report = filled(ox.DeviceContext(cache_dir=cache), path)
     assert values == [0.0, 2.0, 4.0, 6.0]

@@ -8,6 +8,7 @@ import pytest
 
 from optixc import toolchain
 from optixc.enums import Result
+from optixc.installation import include_folder
 
 
 @pytest.fixture(autouse=True)
@@ -110,3 +111,50 @@ def test_lanes_of_targets() -> None:
     assert toolchain.processor_lanes("x86-64-v3") == 8
     assert toolchain.processor_lanes("x86-64-v4") == 16
     assert toolchain.processor_lanes() in (1, 8, 16)
+
+
+SUM = """#include <oxrt/device.h>
+extern "C" __attribute__((visibility("default"))) float sum(const oxrt::float3* v) { return oxrt::dot(*v, oxrt::float3(1.0f, 1.0f, 1.0f)); }
+"""
+
+
+def test_headers_are_parsed_once(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    found = next((one for one in toolchain.installed_compilers() if one.kind == "clang"), None)
+    if found is None:
+        pytest.skip("clang++ is not installed")
+    plan, memory = toolchain.Build(include=include_folder()), tmp_path / "memory"
+    runs: list[list[str]] = []
+    real = toolchain._run
+    monkeypatch.setattr(toolchain, "_run", lambda compiler, arguments: (runs.append(arguments), real(compiler, arguments)))
+    for name in ("a", "b"):
+        toolchain.compile_shared(SUM, tmp_path / f"{name}.so", found, plan, memory)
+    assert ["c++-header" in run for run in runs] == [True, False, False]
+    assert ["-include-pch" in run for run in runs] == [False, True, True]
+
+    # A damaged one is made anew
+    made = next((memory / "headers").glob("*.pch"))
+    made.write_bytes(b"nonsense")
+    toolchain.compile_shared(SUM, tmp_path / "c.so", found, plan, memory)
+    assert (tmp_path / "c.so").is_file()
+    assert made.stat().st_size > 1000
+    toolchain.compile_shared(SUM, tmp_path / "d.so", found, toolchain.Build(include=include_folder(), optimization=1), memory)
+    assert len(list((memory / "headers").glob("*.pch"))) == 2
+
+    # A folder that cannot be written does without
+    (tmp_path / "file").write_text("")
+    toolchain.compile_shared(SUM, tmp_path / "e.so", found, plan, tmp_path / "file")
+    assert (tmp_path / "e.so").is_file()
+
+
+def test_a_compiler_that_is_killed_is_told_apart(tmp_path: Path) -> None:
+    path = tmp_path / "g++"
+    path.write_text("#!/bin/sh\nkill -9 $$\n")
+    path.chmod(0o755)
+    killed = toolchain.Compiler(str(path), str(path), 1, 1, "gcc", (12, 2, 0))
+    with pytest.raises(toolchain.ToolchainError, match="was ended by signal 9; if memory ran out"):
+        toolchain.compile_shared("int x;", tmp_path / "x.so", killed, toolchain.Build(include=tmp_path))
+
+
+def test_a_wrong_folder_for_temporary_files_does_not_matter(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("TMPDIR", "/nowhere")
+    toolchain.compile_shared("int x;", tmp_path / "x.so", toolchain.find_compiler(), toolchain.Build(include=tmp_path))
