@@ -180,7 +180,7 @@ def _precompiled_headers(text: str, compiler: Compiler, build: Build, memory: Pa
     includes = re.findall(r"^#include <oxrt/.*>$", text, re.MULTILINE)
     if compiler.kind != "clang" or not includes:
         return None
-    # clang refuses headers that are newer than what it made of them, so their times are part of the name.
+    # Headers that changed are others: their sizes and times are part of the name.
     stamps = [f"{path.name}:{path.stat().st_size}:{path.stat().st_mtime_ns}" for path in sorted((build.include / "oxrt").glob("*.h"))]
     folder = memory / _PRECOMPILED
     source = folder / f"{digest(compiler.identity, *build.flags(), *includes, *stamps)}.h"
@@ -198,7 +198,8 @@ def _precompiled_headers(text: str, compiler: Compiler, build: Build, memory: Pa
         source.write_text("\n".join(includes) + "\n")
         with tempfile.TemporaryDirectory(prefix="new-", dir=folder) as scratch:
             fresh = Path(scratch) / made.name
-            flags = [*build.flags(), *_QUIET, "-fpch-instantiate-templates", "-x", "c++-header"]
+            # Without times: another process may write the same few lines again.
+            flags = [*build.flags(), *_QUIET, "-fpch-instantiate-templates", "-Xclang", "-fno-pch-timestamp", "-x", "c++-header"]
             _run(compiler, [*flags, str(source), "-o", str(fresh)])
             stated = Path(scratch) / checksum.name
             stated.write_text(digest(fresh.read_bytes()))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from pathlib import Path
 
 import pytest
@@ -128,6 +129,9 @@ def test_headers_are_parsed_once(tmp_path: Path, monkeypatch: pytest.MonkeyPatch
     monkeypatch.setattr(toolchain, "_run", lambda compiler, arguments: (runs.append(arguments), real(compiler, arguments)))
     for name in ("a", "b"):
         toolchain.compile_shared(SUM, tmp_path / f"{name}.so", found, plan, memory)
+        for header in (memory / "headers").glob("*.h"):
+            header.write_text(header.read_text())
+            os.utime(header, (1e9, 1e9))
     assert ["c++-header" in run for run in runs] == [True, False, False]
     assert ["-include-pch" in run for run in runs] == [False, True, True]
 
