@@ -182,7 +182,7 @@ def test_T205_T232_bad_curves_are_named(harness: Harness) -> None:
             build_([ox.BuildInputCurves(cubic, points, bad, first)])
     with pytest.raises(ox.InvalidValueError, match="4 control points"):
         build_([ox.BuildInputCurves(cubic, points, radii, np.ones(1, np.uint32))])
-    with pytest.raises(ox.InvalidValueError, match="one word of flags"):
+    with pytest.raises(ox.InvalidValueError, match="flags is one word"):
         build_([ox.BuildInputCurves(cubic, points, radii, first, flags=[0, 1])])
     with pytest.raises(ox.InvalidValueError, match="ribbons"):
         build_([ox.BuildInputCurves(cubic, points, radii, first, normals=points)])

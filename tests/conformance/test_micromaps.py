@@ -57,7 +57,7 @@ def test_T217_T233_mixed_levels_and_formats(harness: Harness) -> None:
     )
 
 
-def test_T218_T220_the_order_of_micro_triangles() -> None:
+def test_T218_T219_T220_the_order_of_micro_triangles() -> None:
     middles = [(centroids(2)[i] * 12).round().astype(int).tolist() for i in range(16)]
     assert middles == [
         [1, 1],

@@ -14,6 +14,7 @@ from optixc.host import library
 from optixc.host.context import Context
 from optixc.host.inputs import BuildInput, MotionOptions, pack_inputs, take_handle
 from optixc.host.sbt_reach import Parts, below, parts_of
+from optixc.host.whole_numbers import take_member
 
 
 class TraversableHandle(int):
@@ -94,16 +95,15 @@ class Accel:
         AABBS are the world bounds at each motion key, float32 (keys, 2, 3), minimum above maximum where nothing can be hit.
         """
         ffi, emit = library.ffi(), library.lib().oxrtAccelEmitProperty
-        if property_type == AccelPropertyType.COMPACTED_SIZE:
+        kind = take_member(property_type, AccelPropertyType, "emit_property")
+        if kind == AccelPropertyType.COMPACTED_SIZE:
             size = ffi.new("uint64_t*")
-            library.check(emit(self._live(), int(property_type), size, 8))
+            library.check(emit(self._live(), kind, size, 8))
             return int(size[0])
-        if property_type == AccelPropertyType.AABBS:
-            keys = 1 if self._motion is None else max(1, int(self._motion.num_keys))
-            boxes = np.empty((keys, 2, 3), np.float32)
-            library.check(emit(self._live(), int(property_type), ffi.cast("float*", boxes.ctypes.data), boxes.nbytes))
-            return boxes
-        raise InvalidValueError(f"emit_property takes an AccelPropertyType, not {property_type!r}")
+        keys = 1 if self._motion is None else max(1, int(self._motion.num_keys))
+        boxes = np.empty((keys, 2, 3), np.float32)
+        library.check(emit(self._live(), kind, ffi.cast("float*", boxes.ctypes.data), boxes.nbytes))
+        return boxes
 
     def update(self, inputs: Sequence[BuildInput]) -> Accel:
         """Refits to the same inputs with other coordinates; needs ALLOW_UPDATE. The handle stays."""
@@ -127,8 +127,9 @@ class Accel:
     def relocate(self, children: Sequence[Any] | None = None) -> Accel:
         """Another accel that is hit like this one; of an IAS with other children where they are given, one for each instance."""
         ffi = library.ffi()
-        if children is not None and not isinstance(children, Sequence | np.ndarray):
+        if children is not None and (not isinstance(children, Sequence | np.ndarray) or getattr(children, "ndim", 1) != 1):
             raise InvalidValueError(f"relocate takes a list of children, not {type(children).__name__}")
+        children = None if children is None or len(children) == 0 else children
         handles = ffi.NULL if children is None else ffi.new("uint64_t[]", [take_handle(child, "relocate") for child in children])
         made = ffi.new("OxrtAccel*")
         library.check(library.lib().oxrtAccelRelocate(self._live(), handles, 0 if children is None else len(children), made))

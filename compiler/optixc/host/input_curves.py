@@ -5,13 +5,13 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import Any, ClassVar
 
-import numpy as np
-
 from optixc.enums_scene import CurveEndcapFlags, PrimitiveType
 from optixc.errors import InvalidValueError
 from optixc.host import library
 from optixc.host.inputs import BuildInput, Keys, Records, fill_keys, pointer_to, take_index_array, take_keys
+from optixc.host.whole_numbers import take_member
 
+_ENDCAPS = (CurveEndcapFlags.DEFAULT, CurveEndcapFlags.ON)
 # Control points of a segment.
 CURVE_CONTROL_POINTS = {
     PrimitiveType.ROUND_LINEAR: 2,
@@ -81,9 +81,7 @@ class BuildInputCurves(BuildInput):
 
     def fill(self, target: Any, kept: list[Any]) -> None:
         where = "BuildInputCurves"
-        if self.curve_type not in CURVE_CONTROL_POINTS:
-            raise InvalidValueError(f"{where}: curve_type takes a PrimitiveType of curves, not {self.curve_type!r}")
-        kind = PrimitiveType(self.curve_type)
+        kind = PrimitiveType(take_member(self.curve_type, CURVE_CONTROL_POINTS, f"{where}: curve_type"))
         vertices = take_keys(self.vertices, ("n", 3), f"{where}.vertices")
         radii = take_keys(self.radii, ("n",), f"{where}.radii")
         _check_key_counts(where, vertices=vertices, radii=radii)
@@ -96,8 +94,6 @@ class BuildInputCurves(BuildInput):
             raise InvalidValueError(
                 f"{where}.indices holds {int(indices.max())}: a segment has {needed} control points, but there are {count} vertices"
             )
-        if self.endcap_flags not in (CurveEndcapFlags.DEFAULT, CurveEndcapFlags.ON):
-            raise InvalidValueError(f"{where}: endcap_flags is CurveEndcapFlags.DEFAULT or ON, not {self.endcap_flags!r}")
         target.type = library.lib().OXRT_BUILD_INPUT_CURVES
         target.curveType = int(kind)
         target.numKeys = len(vertices)
@@ -106,7 +102,7 @@ class BuildInputCurves(BuildInput):
         target.numVertices = count
         target.indices = pointer_to(indices, "uint32_t*", kept)
         target.numPrimitives = len(indices)
-        target.endcapFlags = int(self.endcap_flags)
+        target.endcapFlags = take_member(self.endcap_flags, _ENDCAPS, f"{where}: endcap_flags")
         if self.normals is not None:
             if kind is not PrimitiveType.FLAT_QUADRATIC_BSPLINE:
                 raise InvalidValueError(f"{where}: normals are for ribbons (FLAT_QUADRATIC_BSPLINE), not for {kind.name}")
@@ -114,6 +110,5 @@ class BuildInputCurves(BuildInput):
             if len(normals) != len(vertices) or len(normals[0]) != count:
                 raise InvalidValueError(f"{where}: normals need one vector for each vertex and key")
             target.normals = fill_keys(normals, kept)
-        if np.size(self.flags) != 1:
-            raise InvalidValueError(f"{where}: curves have one SBT record, so one word of flags, not {np.size(self.flags)}")
+        # curves have one SBT record, so one word of flags
         Records(flags=self.flags, primitive_index_offset=self.primitive_index_offset).fill_records(target, len(indices), kept, where)

@@ -16,9 +16,11 @@ from optixc.errors import InvalidValueError
 from optixc.host import library
 from optixc.host.opacity import pack_micromaps
 from optixc.host.vertex_formats import to_float3
+from optixc.host.whole_numbers import WORD_LIMIT, take_whole
 
 Keys = Any
 _KEY_LIMIT = 1 << 16
+_FLAGS_WANTED = "combines GeometryFlags, one word or one for each record"
 _ALL_MOTION_FLAGS = int(MotionFlags.START_VANISH | MotionFlags.END_VANISH)
 _IDENTITY = (1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0)
 
@@ -34,15 +36,12 @@ class MotionOptions:
 
     def fill(self, target: Any) -> None:
         """Writes the options into an OxrtMotionOptions."""
-        if not isinstance(self.num_keys, int | np.integer) or not 0 <= self.num_keys < _KEY_LIMIT:
-            raise InvalidValueError(f"MotionOptions.num_keys must be 0 to {_KEY_LIMIT - 1}, not {self.num_keys!r}")
-        if not isinstance(self.flags, int) or not 0 <= self.flags <= _ALL_MOTION_FLAGS:
-            raise InvalidValueError(f"MotionOptions.flags combines MotionFlags, it is not {self.flags!r}")
+        target.numKeys = take_whole(self.num_keys, 0, _KEY_LIMIT - 1, "MotionOptions.num_keys")
+        target.flags = take_whole(self.flags, 0, _ALL_MOTION_FLAGS, "MotionOptions.flags combines MotionFlags: it")
         try:
             times = float(self.time_begin), float(self.time_end)
         except (TypeError, ValueError) as error:
             raise InvalidValueError(f"the times of MotionOptions are numbers, not {self.time_begin!r} and {self.time_end!r}") from error
-        target.numKeys, target.flags = int(self.num_keys), int(self.flags)
         target.timeBegin, target.timeEnd = times
 
 
@@ -159,22 +158,22 @@ class Records:
     primitive_index_offset: int = 0
 
     def fill_records(self, target: Any, primitives: int, kept: list[Any], where: str) -> None:
-        count = self.num_sbt_records
-        if not isinstance(count, int) or not 1 <= count <= 1 << 24:
-            raise InvalidValueError(f"{where}: num_sbt_records must be 1 to 2**24, not {count!r}")
+        count = take_whole(self.num_sbt_records, 1, 1 << 24, f"{where}: num_sbt_records")
         try:
-            words = np.atleast_1d(np.asarray(self.flags, np.uint32))
+            given = np.atleast_1d(np.asarray(self.flags))
+            words = given.astype(np.uint32)
         except (TypeError, ValueError, OverflowError) as error:
-            wanted = "combines GeometryFlags, one word or one for each record"
-            raise InvalidValueError(f"{where}: flags {wanted}, not {self.flags!r:.60}") from error
+            raise InvalidValueError(f"{where}: flags {_FLAGS_WANTED}, not {self.flags!r:.60}") from error
+        if given.dtype.kind not in "iu" or not np.array_equal(given, words):
+            raise InvalidValueError(f"{where}: flags {_FLAGS_WANTED}, not {self.flags!r:.60}")
         if words.ndim != 1 or words.size not in (1, count):
             raise InvalidValueError(f"{where}: flags is one word or one for each of the {count} records, not {words.size} words")
         words = np.ascontiguousarray(np.broadcast_to(words, count))
-        if not 0 <= int(self.primitive_index_offset) <= 0xFFFFFFFF - primitives:
-            raise InvalidValueError(f"{where}: primitive_index_offset plus the number of primitives must stay below 2**32")
+        last = WORD_LIMIT - 1 - primitives  # with the number of primitives it must stay below 2**32
+        offset = take_whole(self.primitive_index_offset, 0, last, f"{where}: primitive_index_offset")
         target.numSbtRecords = count
         target.flags = pointer_to(words, "uint32_t*", kept)
-        target.primitiveIndexOffset = int(self.primitive_index_offset)
+        target.primitiveIndexOffset = offset
         if self.sbt_index_offsets is not None:
             offsets = take_index_array(self.sbt_index_offsets, ("n",), f"{where}.sbt_index_offsets")
             if offsets.size != primitives:
@@ -270,7 +269,7 @@ class BuildInputInstances(BuildInput):
         return tuple(one.traversable if isinstance(one, Instance) else one for one in different)
 
     def fill(self, target: Any, kept: list[Any]) -> None:
-        if isinstance(self.instances, Instance) or not isinstance(self.instances, Sequence | np.ndarray):
+        if not isinstance(self.instances, Sequence | np.ndarray) or getattr(self.instances, "ndim", 1) != 1:
             raise InvalidValueError(f"BuildInputInstances takes a list of instances or traversables, not {type(self.instances).__name__}")
         table = np.zeros(len(self.instances), self._DTYPE)
         if len(self.instances) and isinstance(self.instances[0], Instance):
@@ -320,8 +319,12 @@ class BuildInputInstances(BuildInput):
             ("flags", self.flags, 0),
         )
         for name, given, default in members:
-            values = np.atleast_1d(np.asarray(default if given is None else given))
-            if values.dtype.kind not in "iu" or values.size not in (1, count) or (values.size and int(values.min()) < 0):
+            try:
+                values = np.atleast_1d(np.asarray(default if given is None else given))
+            except ValueError:
+                values = np.zeros(0)
+            fits = values.dtype.kind in "iu" and values.ndim == 1 and values.size in (1, count)
+            if not fits or (values.size and not 0 <= int(values.min()) <= int(values.max()) < WORD_LIMIT):
                 raise InvalidValueError(f"{name} of instances is one whole number or {count} of them, not {given!r:.60}")
             table[name] = values
 

@@ -16,10 +16,13 @@ import numpy as np
 from optixc.enums_scene import OpacityMicromapArrayIndexingMode, OpacityMicromapFlags, OpacityMicromapFormat
 from optixc.errors import InvalidValueError
 from optixc.host import library
+from optixc.host.whole_numbers import WORD_LIMIT, take_member, take_whole
 
 MAX_LEVEL = 12
 TRANSPARENT, OPAQUE, UNKNOWN_TRANSPARENT, UNKNOWN_OPAQUE = range(4)
 Words = np.ndarray[Any, Any]
+_FORMATS = (OpacityMicromapFormat.FORMAT_2_STATE, OpacityMicromapFormat.FORMAT_4_STATE)
+_FLAGS = (OpacityMicromapFlags.NONE, OpacityMicromapFlags.PREFER_FAST_TRACE, OpacityMicromapFlags.PREFER_FAST_BUILD)
 
 DESC_DTYPE = np.dtype([("byte_offset", np.uint32), ("subdivision_level", np.uint16), ("format", np.uint16)])
 COUNT_DTYPE = np.dtype([("count", np.uint32), ("subdivision_level", np.uint32), ("format", np.uint32)])
@@ -35,12 +38,9 @@ class OpacityMicromap:
 
     def packed(self) -> Words:
         """The states as OptiX lays them out: 1 or 2 bits each, the first in the lowest bits."""
-        bits = int(self.format)
-        if bits not in (OpacityMicromapFormat.FORMAT_2_STATE, OpacityMicromapFormat.FORMAT_4_STATE):
-            raise InvalidValueError(f"OpacityMicromap.format is FORMAT_2_STATE or FORMAT_4_STATE, not {self.format!r}")
-        if not isinstance(self.level, int) or not 0 <= self.level <= MAX_LEVEL:
-            raise InvalidValueError(f"OpacityMicromap.level must be 0 to {MAX_LEVEL}, not {self.level!r}")
-        states = np.asarray(self.states)
+        bits = take_member(self.format, _FORMATS, "OpacityMicromap.format")
+        take_whole(self.level, 0, MAX_LEVEL, "OpacityMicromap.level")
+        states = _take_numbers(self.states, "OpacityMicromap.states")
         if states.shape != (4**self.level,) or states.dtype.kind not in "iu":
             raise InvalidValueError(
                 f"OpacityMicromap.states takes {4**self.level} whole numbers for level {self.level}, not {states.shape}"
@@ -97,8 +97,7 @@ class OpacityMicromapArray:
 
 def build_array(context: Any, data: Any, descs: Any, histogram: Any, flags: int) -> OpacityMicromapArray:
     """From a list of OpacityMicromap, or from raw bytes with descriptors; a histogram that is not given is counted."""
-    if flags not in (OpacityMicromapFlags.NONE, OpacityMicromapFlags.PREFER_FAST_TRACE, OpacityMicromapFlags.PREFER_FAST_BUILD):
-        raise InvalidValueError(f"flags takes one of OpacityMicromapFlags, not {flags!r}")
+    word = take_member(flags, _FLAGS, "opacity_micromap_array_build: flags")
     if isinstance(data, Sequence) and not isinstance(data, bytes | bytearray):
         if descs is not None:
             raise InvalidValueError("descs go with raw bytes; a list of OpacityMicromap tells its own")
@@ -108,7 +107,7 @@ def build_array(context: Any, data: Any, descs: Any, histogram: Any, flags: int)
         raise InvalidValueError("data takes a list of OpacityMicromap, or bytes or a uint8 array of one dimension")
     table = _table(descs, DESC_DTYPE, "descs")
     counts = _histogram(table) if histogram is None else _table(histogram, COUNT_DTYPE, "histogram")
-    return OpacityMicromapArray(context, np.ascontiguousarray(raw), table, counts, int(flags))
+    return OpacityMicromapArray(context, np.ascontiguousarray(raw), table, counts, word)
 
 
 def _pack(maps: Sequence[Any]) -> tuple[Words, Words]:
@@ -125,6 +124,13 @@ def _pack(maps: Sequence[Any]) -> tuple[Words, Words]:
     if offset >= 1 << 32:
         raise InvalidValueError(f"the micromaps need {offset} bytes; offsets have 32 bits")
     return (np.concatenate(parts) if parts else np.zeros(0, np.uint8)), np.array(rows, DESC_DTYPE)
+
+
+def _take_numbers(values: Any, where: str) -> Words:
+    try:
+        return np.asarray(values)
+    except ValueError as error:
+        raise InvalidValueError(f"{where} takes an array of whole numbers, not {values!r:.60}") from error
 
 
 def _table(rows: Any, dtype: np.dtype[Any], name: str) -> Words:
@@ -163,12 +169,14 @@ def pack_micromaps(given: Any, triangles: int, kept: list[Any]) -> Any:
         raise InvalidValueError(f"opacity_micromap takes a BuildInputOpacityMicromap, not {type(given).__name__}")
     ffi = library.ffi()
     made = ffi.new("OxrtOpacityMicromapInput*")
+    if given.array is not None and not isinstance(given.array, OpacityMicromapArray):
+        raise InvalidValueError(f"BuildInputOpacityMicromap.array takes an OpacityMicromapArray, not {type(given.array).__name__}")
     made.array = given.array.handle if given.array is not None else ffi.NULL
-    made.indexOffset = given.index_offset
+    made.indexOffset = take_whole(given.index_offset, 0, WORD_LIMIT - 1, "BuildInputOpacityMicromap.index_offset")
     mode = OpacityMicromapArrayIndexingMode.LINEAR
     if given.indices is not None:
         mode = OpacityMicromapArrayIndexingMode.INDEXED
-        indices = np.asarray(given.indices)
+        indices = _take_numbers(given.indices, "BuildInputOpacityMicromap.indices")
         signed = {np.dtype(np.int16), np.dtype(np.int32), np.dtype(np.int64)}
         if indices.dtype not in signed or indices.shape != (triangles,):
             raise InvalidValueError(f"micromap indices take int16 or int32 of shape ({triangles},), not {indices.dtype} {indices.shape}")

@@ -88,6 +88,8 @@ def _options(motion_options: MotionOptions | None, count: int, where: str) -> Mo
     """The options, by default the keys spread over 0 to 1."""
     if motion_options is None:
         return MotionOptions(count)
+    if not isinstance(motion_options, MotionOptions):
+        raise InvalidValueError(f"{where}: motion_options takes a MotionOptions, not {type(motion_options).__name__}")
     if motion_options.num_keys != count:
         raise InvalidValueError(f"{where}: motion_options.num_keys is {motion_options.num_keys}, but there are {count} keys")
     return motion_options

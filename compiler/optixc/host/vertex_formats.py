@@ -8,6 +8,7 @@ import numpy as np
 
 from optixc.enums_scene import VertexFormat
 from optixc.errors import InvalidValueError
+from optixc.host.whole_numbers import take_member
 
 _FORMATS = {
     (np.dtype(np.float32), 3): VertexFormat.FLOAT3,
@@ -29,7 +30,7 @@ def to_float3(vertices: Any, vertex_format: Any, where: str) -> Any:
 
 def _convert(array: Any, vertex_format: Any, where: str) -> Any:
     found = _FORMATS.get((array.dtype, array.shape[1])) if isinstance(array, np.ndarray) and array.ndim == 2 else None
-    if vertex_format is not None and found != vertex_format:
+    if vertex_format is not None and found != take_member(vertex_format, VertexFormat, f"{where}: vertex_format"):
         told = found.name if found is not None else f"{getattr(array, 'dtype', type(array).__name__)} of shape {np.shape(array)}"
         raise InvalidValueError(f"{where}: vertex_format is {VertexFormat(vertex_format).name}, but the array is {told}")
     if found is None or found is VertexFormat.FLOAT3:
