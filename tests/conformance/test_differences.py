@@ -1,0 +1,29 @@
+"""The differences that the comparison with recorded results accepts are all told in the documentation, in the same words."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from harness import Harness
+from oracle_differences import REASONS
+from scenes import closest, gas, hitgroup, missed, ray, trace, triangles
+from test_spheres import spheres
+
+PAGE = (Path(__file__).parents[2] / "docs" / "differences.md").read_text()
+NEXT_TO_ZERO = 2.0**-64
+
+
+@pytest.mark.parametrize("name", REASONS)
+def test_every_difference_is_told(name: str) -> None:
+    assert f"| {name} | {REASONS[name]} |" in PAGE
+
+
+def test_hits_next_to_the_origin_begin_at_two_to_the_minus_64(harness: Harness) -> None:
+    rays = [ray((0.25, 0.25, z)) for z in (NEXT_TO_ZERO / 4, NEXT_TO_ZERO * 4)]
+    below, above = trace(harness, [gas(triangles(((0, 0, 0), (1, 0, 0), (0, 1, 0))))], rays)
+    assert missed(below)
+    assert closest(above)["tmax"] == NEXT_TO_ZERO * 4
+    below, above = trace(harness, [gas(spheres([(0, 0, -1)], [1]))], [ray((0, 0, 0)), ray((0, 0, 0.5))], [hitgroup(kind="sphere")])
+    assert missed(below)
+    assert closest(above)["tmax"] == 0.5
