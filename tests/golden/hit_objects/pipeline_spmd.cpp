@@ -115,7 +115,7 @@ const OxrtProgram programs[] = {
     {"__raygen__main", OXRT_KIND_RAYGEN, 0, run_raygen_main},
     {"__closesthit__white", OXRT_KIND_CLOSESTHIT, 0, nullptr},
 };
-const OxrtPipelineVariant variants[] = {{OXRT_ISA_X86_64_V4, 16, programs, 2}};
+const OxrtPipelineVariant variants[] = {{oxrt::BUILT_ISA, 16, programs, 2}};
 static_assert(sizeof(Params) == 24);
 
 }  // namespace
