@@ -193,6 +193,7 @@ def pipeline_options(options: CompileOptions, params: t.Struct | None) -> nodes.
         uses_motion_blur=options.pipeline.uses_motion_blur,
         allow_opacity_micromaps=options.pipeline.allow_opacity_micromaps,
         traversable_graph_flags=int(options.pipeline.traversable_graph_flags),
+        primitive_type_flags=int(options.pipeline.uses_primitive_type_flags),
         exception_flags=int(options.pipeline.exception_flags),
         bound_values=tuple((name, _bound_literal(name, value, params)) for name, value in sorted(options.bound_values.items())),
     )

@@ -230,3 +230,17 @@ def test_traversables_that_the_graph_flags_leave_out(simd: int, flags: int) -> N
         with pytest.raises(ox.ValidationFailureError, match="traversable_graph_flags") as caught:
             made.launch(rays)
         assert caught.value.fault_code == code, name
+
+
+@pytest.mark.parametrize("simd", [1, 8, 16])
+def test_primitives_that_the_type_flags_leave_out(simd: int) -> None:
+    flags = ox.PrimitiveTypeFlags
+    made = Checked(simd, uses_primitive_type_flags=flags.TRIANGLE | flags.SPHERE)
+    spheres = made.context.accel_build([ox.BuildInputSpheres(np.float32([[0.25, 0.25, 0]]), np.float32([1.0]))])
+    made.check_fine()
+    assert made.launch(made.rays({}, spheres)).out.tolist() == [11] * COUNT
+    inside = made.context.accel_build([ox.BuildInputInstances([ox.Instance(made.gas), ox.Instance(made.box)])])
+    for scene in (made.box, inside):
+        with pytest.raises(ox.ValidationFailureError, match="uses_primitive_type_flags leave out") as caught:
+            made.launch(made.rays({}, scene))
+        assert caught.value.fault_code == -8

@@ -28,6 +28,9 @@ FUNCTIONS = {
     ProgramKind.MISS: "miss",
 }
 
+# OptiX's primitive type flags, by what a scene needs.
+_CUSTOM, _SPHERES, _CURVES = 1, 1 << 6, 0b1111_1011_1110
+
 
 class Dispatch:
     """Writes the dispatchers of one pipeline."""
@@ -79,6 +82,9 @@ class Dispatch:
             texts.append(("maxTraceDepth", str(options.max_trace_depth)))
         if options.validation and options.traversable_graph_flags:
             texts.append(("graphFlags", str(options.traversable_graph_flags)))
+        excluded = _excluded_needs(options.primitive_type_flags)
+        if options.validation and excluded:
+            texts.append(("excludedNeeds", " | ".join(excluded)))
         return texts
 
     def define_class(self, programs: ProgramClass) -> None:
@@ -190,3 +196,11 @@ class Dispatch:
                 arguments.append(f"a{position}")
                 position += 1
         return arguments
+
+
+def _excluded_needs(primitive_type_flags: int) -> list[str]:
+    """What scenes must not need by OptiX's flags of primitive types; no flags allow everything here."""
+    if not primitive_type_flags:
+        return []
+    kinds = ((_CUSTOM, "OXRT_SCENE_HAS_CUSTOM"), (_CURVES, "OXRT_SCENE_HAS_CURVES"), (_SPHERES, "OXRT_SCENE_HAS_SPHERES"))
+    return [name for flags, name in kinds if not primitive_type_flags & flags]

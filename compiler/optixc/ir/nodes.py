@@ -307,6 +307,7 @@ class PipelineOptions:
     uses_motion_blur: bool = False
     allow_opacity_micromaps: bool = False
     traversable_graph_flags: int = 0
+    primitive_type_flags: int = 0
     exception_flags: int = 0
     bound_values: tuple[tuple[str, Literal], ...] = field(default=())
 

@@ -28,6 +28,7 @@ struct NoPrograms {
     static constexpr bool usesTime = false;
     static constexpr bool usesMicromaps = false;
     static constexpr bool isValidated = false;
+    static constexpr uint32_t excludedNeeds = 0; /* OXRT_SCENE_...: kinds of primitives that uses_primitive_type_flags leaves out */
     static constexpr uint32_t graphFlags = 0; /* the pipeline's traversable_graph_flags: 1 a lone GAS, 2 one level of instances, 0 any */
 };
 

@@ -97,6 +97,8 @@ template <class Programs> __attribute__((noinline)) void checkRay(const Ray& ray
     else if (ray.root && !isGraphAllowed<Programs>(*ray.root))
         fault(thread, ray.root->type == OXRT_TRAVERSABLE_GAS ? OXRT_FAULT_SINGLE_LEVEL_GAS : OXRT_FAULT_INVALID_TRAVERSABLE,
               "the traversable is of a kind that the pipeline's traversable_graph_flags leave out", place);
+    else if (ray.root && (ray.root->needs & Programs::excludedNeeds))
+        fault(thread, OXRT_FAULT_PRIMITIVE_TYPE, "the scene holds primitives that the pipeline's uses_primitive_type_flags leave out", place);
 }
 
 template <class Programs> OXRT_INLINE void runMiss(Ray& ray, typename Programs::Payload& payload, Place place) {
