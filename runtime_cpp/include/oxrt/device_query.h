@@ -35,10 +35,18 @@ template <uint32_t VALUE> struct FlagTraits<KnownFlags<VALUE>> {
 using EmbreeRow = float __attribute__((vector_size(16), may_alias));
 static_assert(offsetof(RTCRay, org_x) == 0 && offsetof(RTCRay, tnear) == 12 && offsetof(RTCRay, dir_x) == 16 && offsetof(RTCRay, time) == 28);
 
+/* Four numbers in a register. Older clang loads them in one piece where they were just stored one by one, and waits for that itself. */
+OXRT_INLINE EmbreeRow embreeRow(float3 xyz, float w) {
+#if defined(__clang__) && defined(__x86_64__)
+    __asm__("" : "+x"(xyz.x), "+x"(xyz.y), "+x"(xyz.z));
+#endif
+    return EmbreeRow{xyz.x, xyz.y, xyz.z, w};
+}
+
 OXRT_INLINE void setEmbreeRay(RTCRay& target, const Ray& ray) {
     EmbreeRow* rows = reinterpret_cast<EmbreeRow*>(&target);
-    rows[0] = EmbreeRow{ray.origin.x, ray.origin.y, ray.origin.z, nextUp(ray.tmin)};
-    rows[1] = EmbreeRow{ray.direction.x, ray.direction.y, ray.direction.z, ray.time};
+    rows[0] = embreeRow(ray.origin, nextUp(ray.tmin));
+    rows[1] = embreeRow(ray.direction, ray.time);
     target.tfar = nextDown(ray.tmax);
     target.mask = ray.mask;
     target.id = 0;

@@ -10,7 +10,14 @@ inline namespace OXRT_ISA {
 
 /* ---- launch -------------------------------------------------------------------------------------------------------------------- */
 
-OXRT_INLINE uint3 getLaunchIndex(const OxrtThread& thread) { return {thread.index[0], thread.index[1], thread.index[2]}; }
+/* The numbers were just stored one by one. Older clang loads two in one piece, which waits for the stores: a fifth of a short program. */
+OXRT_INLINE uint3 getLaunchIndex(const OxrtThread& thread) {
+    uint3 index = {thread.index[0], thread.index[1], thread.index[2]};
+#if defined(__clang__)
+    __asm__("" : "+r"(index.x), "+r"(index.y), "+r"(index.z));
+#endif
+    return index;
+}
 OXRT_INLINE uint3 getLaunchDimensions(const OxrtThread& thread) {
     return {thread.launch->width, thread.launch->height, thread.launch->depth};
 }
