@@ -118,6 +118,20 @@ def test_struct_arrays_take_the_structs_dtype() -> None:
         Scene(np.zeros((3, 4), np.float32))
 
 
+def test_fixed_arrays_hold_vectors_and_matrices() -> None:
+    @ox.struct
+    class Spline:
+        knots: ox.FixedArray[ox.float3, 2]
+        frames: ox.FixedArray[ox.float3x4, 2]
+
+    spline = Spline([(1, 2, 3), (4, 5, 6)], np.arange(24).reshape(2, 3, 4))
+    np.testing.assert_array_equal(row(spline)["knots"], [[1, 2, 3], [4, 5, 6]])
+    np.testing.assert_array_equal(row(spline)["frames"], np.arange(24).reshape(2, 3, 4))
+    assert Spline.nbytes == 4 * (6 + 24)
+    with pytest.raises(ox.InvalidValueError, match=r"shape \(2, 3\)"):
+        spline.knots = [1, 2, 3]
+
+
 def test_a_list_of_structs_is_copied_into_an_array() -> None:
     @ox.struct
     class Mesh:

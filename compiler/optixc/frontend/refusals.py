@@ -12,7 +12,7 @@ _EXPRESSIONS: dict[type[ast.expr], tuple[str, str, str]] = {
     ast.Lambda: ("OX402", "a lambda", "write a helper function with `@ox.device`"),
     ast.Dict: ("OX402", "a dict", "write an `@ox.struct` class"),
     ast.Set: ("OX402", "a set", "use a FixedArray, or bits of an integer"),
-    ast.List: ("OX402", "a list", "write ox.FixedArray[T, N](...)"),
+    ast.List: ("OX402", "a list", "write a vector, `float3(x, y, z)`, or ox.FixedArray[T, N](...)"),
     ast.ListComp: ("OX402", "a list comprehension", "fill a FixedArray in a loop"),
     ast.SetComp: ("OX402", "a set comprehension", "write a loop"),
     ast.DictComp: ("OX402", "a dict comprehension", "write a loop"),

@@ -209,7 +209,7 @@ class FixedArrayField:
 
     @property
     def dtype(self) -> np.dtype[Any]:
-        return np.dtype((self.element.dtype, (self.size,)))
+        return np.dtype((self.element.dtype.base, (self.size, *self.element.dtype.shape)))
 
     @property
     def alignment(self) -> int:
