@@ -150,14 +150,18 @@ std::unique_ptr<Shape> makeSpheres(const OxrtBuildInput& input)
     return std::make_unique<Spheres>(input);
 }
 
+// Without branches, so that the lanes of a packet go together; lanes that are not valid stay so.
 void dropBackFaces(const RTCFilterFunctionNArguments* arguments)
 {
-    for (unsigned lane = 0; lane < arguments->N; ++lane) {
-        if (arguments->valid[lane] != -1) continue;
-        float cosine = 0;
-        for (unsigned axis = 0; axis < 3; ++axis)
-            cosine += fieldOf(arguments->ray, DIRECTION + axis, arguments->N, lane) * fieldOf(arguments->hit, NORMAL + axis, arguments->N, lane);
-        if (!(cosine < 0)) arguments->valid[lane] = 0;
+    enum { DIRECTION = 4, NORMAL = 0 };
+    const unsigned width = arguments->N;
+    const float* const direction = reinterpret_cast<const float*>(arguments->ray) + DIRECTION * width;
+    const float* const normal = reinterpret_cast<const float*>(arguments->hit) + NORMAL * width;
+    int* const valid = arguments->valid;
+    for (unsigned lane = 0; lane < width; ++lane) {
+        const float cosine = direction[lane] * normal[lane] + direction[width + lane] * normal[width + lane] +
+                             direction[2 * width + lane] * normal[2 * width + lane];
+        valid[lane] = cosine < 0 ? valid[lane] : 0;
     }
 }
 
