@@ -103,7 +103,7 @@ FEATURES: dict[str, Feature] = {
     "traverse data": Feature(True, _shader("hit_objects.py")),
     "callables": Feature(True, _shader("callables.py")),
     "exceptions": Feature(True, _shader("throwing.py")),
-    "payload types": Feature(False, _shader("payload_types.py")),
+    "payload types": Feature(True, _shader("payload_types.py")),
     "payload of 32 words": Feature(True, _shader("payload32.py")),
 }
 

@@ -17,7 +17,7 @@ from oracle_exceptions import check_exceptions, check_refused_code
 from oracle_files import Probe
 from oracle_hit_objects import USING_TRAVERSE_DATA, check_hit_objects, mode_of
 from oracle_instance_queries import check_instance_queries
-from oracle_payload import check_payload32
+from oracle_payload import VIOLATIONS, check_payload32, check_payload_types, check_payload_violation
 from oracle_queries import check_triangle_queries, is_triangle_query, moves
 
 
@@ -33,6 +33,10 @@ def check_of(probe: Probe) -> Check | None:
     """The check for a probe, None where there is none."""
     if "rows" in probe.data:
         return Check(("payload of 32 words",), check_payload32)
+    if probe.name.startswith("payload_types") and "u" in probe.data:
+        return Check(("payload types",), check_payload_types)
+    if probe.name.startswith("payload_semantics_violation") and probe.name.rsplit("_", 1)[1] in VIOLATIONS:
+        return Check(("payload types",), check_payload_violation)
     if "states" in probe.data:
         more = ("traverse data",) if mode_of(probe) == USING_TRAVERSE_DATA else ()
         return Check(("hit objects", *more), check_hit_objects)
