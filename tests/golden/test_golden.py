@@ -11,7 +11,7 @@ import os
 import shutil
 import subprocess
 from pathlib import Path
-from typing import Any
+from typing import Any, get_args
 
 import pytest
 
@@ -21,6 +21,8 @@ from optixc.frontend.compile import compile_file
 from optixc.installation import include_folder
 from optixc.ir import nodes
 from optixc.ir import types as t
+from optixc.ir import walk
+from optixc.ir.intrinsic_rows import INTRINSICS
 from optixc.ir.text import print_module
 from optixc.ir.verify import verify
 from optixc.passes.features import features
@@ -90,6 +92,29 @@ def test_output_is_as_recorded(case: str, request: pytest.FixtureRequest) -> Non
         if update:
             (FOLDER / case / name).unlink()
     assert update or not stale, f"nothing makes {stale} any more"
+
+
+def seen_in_golden_files() -> set[object]:
+    """Node classes, operators, and effects and states of device functions that the modules of all cases have."""
+    seen: set[object] = set()
+    for case in CASES:
+        module = compile_file(str(FOLDER / case / "shader.py")).module
+        for function in (*module.helpers, *module.programs):
+            for node in (*walk.statements(function.body), *walk.expressions(function.body)):
+                seen.add(type(node))
+                match node:
+                    case nodes.Binary(op=op) | nodes.Unary(op=op):
+                        seen.add(op)
+                    case nodes.IntrinsicCall(name=name) | nodes.CallIntrinsic(name=name) | nodes.Trace(name=name):
+                        seen |= {INTRINSICS[name].effect, (INTRINSICS[name].effect, INTRINSICS[name].state)}
+    return seen
+
+
+def test_every_construct_is_in_a_golden_file() -> None:
+    """A new node class, operator or kind of device function needs a golden file that shows it."""
+    kinds = {row.effect for row in INTRINSICS.values()} | {(row.effect, row.state) for row in INTRINSICS.values()}
+    wanted = {*get_args(nodes.Stmt), *get_args(nodes.Expr), *nodes.BinaryOp, *nodes.UnaryOp, *kinds}
+    assert wanted - seen_in_golden_files() == set()
 
 
 def test_output_is_the_same_twice(case: str) -> None:

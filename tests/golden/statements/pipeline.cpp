@@ -89,25 +89,29 @@ void raygen_main(OxrtThread& thread) {
         }
     }
 #line 60 "shader.py"
+    while (found < 10) {
+        found = found + 1;
+    }
+#line 62 "shader.py"
     oxrt::Tuple<int32_t, int32_t> items = divide(total, 7);
-#line 60 "shader.py"
+#line 62 "shader.py"
     int32_t quotient = oxrt::get<0>(items);
-#line 60 "shader.py"
+#line 62 "shader.py"
     int32_t rest = oxrt::get<1>(items);
     int32_t value = quotient;
-#line 61 "shader.py"
+#line 63 "shader.py"
     quotient = rest;
-#line 61 "shader.py"
+#line 63 "shader.py"
     rest = value;
     if (total > 5) {
         kept = quotient;
     } else {
         kept = rest;
     }
-#line 66 "shader.py"
+#line 68 "shader.py"
     oxrt::float2 pair = oxrt::float2(1.0f, 2.0f);
     pair.x = float(kept);
-#line 69 "shader.py"
+#line 71 "shader.py"
     if (kept == 0 || kept == 1) {
         total = factorial(5);
     } else if (kept == 2) {
@@ -115,11 +119,11 @@ void raygen_main(OxrtThread& thread) {
     } else {
         total = total + oxrt::convert<int32_t>(pair.x);
     }
-#line 75 "shader.py"
+#line 77 "shader.py"
     params.numbers.at(i) = total;
 }
 
-#line 123 "pipeline.cpp"
+#line 127 "pipeline.cpp"
 void run_raygen_main(OxrtThread* thread, const OxrtTile* tile) {
     oxrt::forEachIndex(*thread, *tile, [thread] {
         raygen_main(*thread);

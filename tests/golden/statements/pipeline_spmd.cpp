@@ -159,58 +159,72 @@ void raygen_main_lanes([[maybe_unused]] Lanes& thread, [[maybe_unused]] Mask mas
     }
     if (oxrt::any(mask)) {
 #line 60 "shader.py"
+        Mask looping_ = mask;
+#line 60 "shader.py"
+        while (oxrt::any(looping_)) {
+#line 60 "shader.py"
+            Mask mask_3 = looping_;
+#line 60 "shader.py"
+            mask_3 = looping_ = looping_ & (found < 10);
+            if (oxrt::none(mask_3)) {
+                break;
+            }
+#line 61 "shader.py"
+            oxrt::assign(mask_3, found, found + 1);
+        }
+#line 62 "shader.py"
         Wide<oxrt::Tuple<int32_t, int32_t>> items = divide_lanes(thread, mask, total, 7);
-#line 60 "shader.py"
+#line 62 "shader.py"
         Wide<int32_t> quotient = oxrt::get<0>(items);
-#line 60 "shader.py"
+#line 62 "shader.py"
         Wide<int32_t> rest = oxrt::get<1>(items);
         Wide<int32_t> value = quotient;
-#line 61 "shader.py"
+#line 63 "shader.py"
         quotient = rest;
-#line 61 "shader.py"
+#line 63 "shader.py"
         rest = value;
         const Mask test_ = total > 5;
-#line 62 "shader.py"
-        Mask mask_3 = mask & test_;
-#line 62 "shader.py"
-        if (oxrt::any(mask_3)) {
-            oxrt::assign(mask_3, kept, quotient);
-        }
-        Mask mask_4 = oxrt::without(mask, test_);
+#line 64 "shader.py"
+        Mask mask_4 = mask & test_;
+#line 64 "shader.py"
         if (oxrt::any(mask_4)) {
-#line 65 "shader.py"
-            oxrt::assign(mask_4, kept, rest);
+            oxrt::assign(mask_4, kept, quotient);
         }
-#line 66 "shader.py"
+        Mask mask_5 = oxrt::without(mask, test_);
+        if (oxrt::any(mask_5)) {
+#line 67 "shader.py"
+            oxrt::assign(mask_5, kept, rest);
+        }
+#line 68 "shader.py"
         Wide<oxrt::float2> pair = Wide<oxrt::float2>(oxrt::float2(1.0f, 2.0f));
         pair.x = oxrt::convert<float>(kept);
         const Mask test_2 = (kept == 0) | (kept == 1);
-        Mask mask_5 = mask & test_2;
-#line 69 "shader.py"
-        if (oxrt::any(mask_5)) {
-            oxrt::assign(mask_5, total, factorial_lanes(thread, mask_5, 5));
-        }
-        Mask mask_6 = oxrt::without(mask, test_2);
+        Mask mask_6 = mask & test_2;
+#line 71 "shader.py"
         if (oxrt::any(mask_6)) {
+            oxrt::assign(mask_6, total, factorial_lanes(thread, mask_6, 5));
+        }
+        Mask mask_7 = oxrt::without(mask, test_2);
+        if (oxrt::any(mask_7)) {
             const Mask test_3 = kept == 2;
-#line 71 "shader.py"
-            Mask mask_7 = mask_6 & test_3;
-#line 71 "shader.py"
-            if (oxrt::any(mask_7)) {
-                oxrt::assign(mask_7, total, Wide<int32_t>(2));
-            }
-            Mask mask_8 = oxrt::without(mask_6, test_3);
+#line 73 "shader.py"
+            Mask mask_8 = mask_7 & test_3;
+#line 73 "shader.py"
             if (oxrt::any(mask_8)) {
-#line 74 "shader.py"
-                oxrt::assign(mask_8, total, total + oxrt::convert<int32_t>(pair.x));
+                oxrt::assign(mask_8, total, Wide<int32_t>(2));
+            }
+            Mask mask_9 = oxrt::without(mask_7, test_3);
+            if (oxrt::any(mask_9)) {
+#line 76 "shader.py"
+                oxrt::assign(mask_9, total, total + oxrt::convert<int32_t>(pair.x));
             }
         }
-#line 75 "shader.py"
+#line 77 "shader.py"
         oxrt::store<LANES>(mask, total, params.numbers, i);
     }
 }
 
-#line 214 "pipeline.cpp"
+#line 228 "pipeline.cpp"
 void run_raygen_main(OxrtThread* thread, const OxrtTile* tile) {
     oxrt::runBlocks<LANES>(*thread, *tile, [](Lanes& lanes, Mask mask) {
         raygen_main_lanes(lanes, mask);

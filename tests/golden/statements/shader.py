@@ -57,6 +57,8 @@ def __raygen__main():
         found = collatz(total)
         if found == 7:
             break
+    while found < 10:
+        found += 1
     quotient, rest = divide(total, 7)
     quotient, rest = rest, quotient
     if total > 5:  # noqa: SIM108
