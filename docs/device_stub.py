@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+
 from optixc.frontend.builtin_names import SPECIAL_FORMS
 from optixc.ir import types as t
 from optixc.ir.intrinsic_rows import INTRINSICS, OVERLOADS, ROWS
@@ -21,7 +23,9 @@ _V = TypeVar("_V", bound=Vector)
 _S = TypeVar("_S")
 _P = TypeVar("_P", bound=tuple[Any, ...])
 
+{names}
 '''
+_NAMES = "{names}\n"
 
 _SPECIAL = '''
 {traces}
@@ -96,7 +100,15 @@ def device_functions_stub() -> str:
         parts.append(f'{heads[-1]} -> {_results(rows)[-1]}:\n    """{doc}"""\n\n')
     traces = "".join(_trace(name) for name in ("trace", "traverse"))
     parts.append(_SPECIAL.format(traces=traces.strip("\n") + "\n"))
-    return "".join(parts)
+    text = "".join(parts)
+    # As the linter wants them: numbers in names by value.
+    public = sorted(set(re.findall(r"^def (\w+)", text, re.MULTILINE)), key=_natural)
+    listed = "".join(f'    "{name}",\n' for name in public)
+    return text.replace(_NAMES, f"__all__ = [\n{listed}]\n")
+
+
+def _natural(name: str) -> list[tuple[int, str]]:
+    return [(int(part), "") if part.isdigit() else (0, part) for part in re.split(r"(\d+)", name)]
 
 
 def _trace(name: str) -> str:

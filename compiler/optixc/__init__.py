@@ -208,7 +208,11 @@ __all__ += errors.__all__
 
 
 if TYPE_CHECKING:
+    from optixc import device_functions
     from optixc.device_functions import *  # noqa: F403
+
+    # Type checkers take for public what this list names, and nothing else of an installed package.
+    __all__ += device_functions.__all__
 else:
 
     def __getattr__(name: str) -> Any:
