@@ -69,10 +69,7 @@ def render(width: int, height: int, samples: int, strands: int) -> np.ndarray:
     table = ox.ShaderBindingTable(raygen=raygen.record(), miss=[nothing.record(), clear.record()], hitgroup=records)
     image = np.zeros((height, width, 4), np.float32)
     ray_counts = np.zeros((height, width), np.uint32)
-    hairs = np.zeros(len(STYLES), Hair.dtype)
-    for row, (_, melanins) in zip(range(len(STYLES)), STYLES, strict=True):
-        one = hair(*melanins)
-        hairs[row] = tuple(np.asarray(getattr(one, name)) if name == "absorption" else getattr(one, name) for name in Hair.dtype.names)
+    hairs = [hair(*melanins) for _, melanins in STYLES]
     params = shader.Params(
         image=image,
         ray_counts=ray_counts,

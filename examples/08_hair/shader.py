@@ -35,7 +35,7 @@ class Params:
     samples: int
     max_depth: int
     hairs: ox.Array[Hair]
-    lights: ox.FixedArray[RectangleLight, 2]
+    lights: ox.FixedArray[RectangleLight, 2]  # type: ignore[valid-type]
     ambient: float3
 
 
@@ -101,7 +101,8 @@ def is_open(origin: float3, to_light: float3, distance: float) -> float:
 def draw_light(point: float3, u: float2) -> LightSample:
     """A point of one of the lights, each as likely as the other; the radiance is made up for that."""
     chosen = 1 if u.x >= 0.5 else 0
-    sample = rectangle_light(params.lights[chosen], point, float2(2.0 * u.x - float(chosen), u.y))
+    v = float2(2.0 * u.x - float(chosen), u.y)
+    sample = rectangle_light(params.lights[chosen], point, v)  # type: ignore[index]
     sample.radiance *= float(LIGHTS)
     return sample
 

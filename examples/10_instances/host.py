@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import sys
 from pathlib import Path
+from typing import Any
 
 import landscape
 import numpy as np
@@ -25,7 +26,7 @@ LEAVES = [
 GRASS, ROCK, WATER = (0.105, 0.125, 0.040), (0.24, 0.22, 0.20), (0.012, 0.030, 0.030)
 
 
-def material(color: tuple[float, ...], other: tuple[float, ...] | None = None, **more: object) -> shader.Material:
+def material(color: tuple[float, ...], other: tuple[float, ...] | None = None, **more: Any) -> shader.Material:
     """Record data."""
     members = {"slope_color": color, "is_water": 0, "is_ground": 0, **more}
     return shader.Material(color=color, other=other or color, **members)

@@ -80,7 +80,8 @@ def trunk(height: float, radius: float, sides: int = 7) -> Mesh:
 def conifer(tiers: int = 11, points: int = 13) -> Mesh:
     """Skirts of drooping, jagged branches, one above the other; about a unit high."""
     random = np.random.default_rng(5)
-    vertices, triangles = [], []
+    vertices: list[np.ndarray] = []
+    triangles: list[np.ndarray] = []
     for tier in range(tiers):
         share = tier / (tiers - 1)
         base, top = 0.12 + 0.80 * share, 0.26 + 0.76 * share
@@ -88,7 +89,7 @@ def conifer(tiers: int = 11, points: int = 13) -> Mesh:
         angle = np.linspace(0.0, 2.0 * np.pi, 2 * points, endpoint=False) + random.uniform(0.0, 1.0)
         far = np.where(np.arange(2 * points) % 2 == 0, 1.0, 0.55) * random.uniform(0.8, 1.15, 2 * points) * reach
         rim = np.stack([far * np.cos(angle), base - 0.10 * far + random.uniform(-0.012, 0.012, 2 * points), far * np.sin(angle)], axis=1)
-        start = sum(map(len, vertices))
+        start = sum(len(part) for part in vertices)
         vertices.append(np.concatenate([rim, [[0.0, top, 0.0]]]))
         k = np.arange(2 * points)
         triangles.append(np.stack([start + k, np.full_like(k, start + 2 * points), start + (k + 1) % (2 * points)], axis=1))

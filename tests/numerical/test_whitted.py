@@ -38,7 +38,7 @@ def test_T288_whitted_spheres_match_an_independent_renderer(library: Any, refere
     # The same point of each pixel: sample 0 of the sequence with the pixel's number as seed
     seeds = np.column_stack([np.zeros(SIZE * SIZE), np.arange(SIZE * SIZE)])
     jitter = library.run("sobol", seeds)[:, :2].reshape(SIZE, SIZE, 2).astype(np.float64)
-    camera = reference.host.pinhole(1.0)
+    camera = reference.host.pinhole(reference.host.EYE, reference.host.TARGET, reference.host.VERTICAL_FOV, 1.0)
     eye, u, v, w = (np.array(value, np.float64) for value in (camera.eye, camera.u, camera.v, camera.w))
     expected = np.empty_like(image, np.float64)
     for row in range(SIZE):

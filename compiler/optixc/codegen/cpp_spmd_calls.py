@@ -147,10 +147,19 @@ class LaneCalls:
             element = statement.arguments[0]
             indices = ", ".join(f"oxrt::inLane({self._expressions.text(index)}, lane)" for index in element.indices)
             arguments[0] = f"oxrt::inLane({self._expressions.text(element.array)}, lane).at({indices})"
+        mask = self._existing(statement)
         call = f"{row.cpp}({', '.join([*hidden, *arguments])})"
         if statement.target is None:
-            return f"oxrt::eachLane({self._mask}, [&]([[maybe_unused]] int lane) {{ {call}; }})", True
-        return f"oxrt::mapActive({self._mask}, [&]([[maybe_unused]] int lane) {{ return {call}; }})", True
+            return f"oxrt::eachLane({mask}, [&]([[maybe_unused]] int lane) {{ {call}; }})", True
+        return f"oxrt::mapActive({mask}, [&]([[maybe_unused]] int lane) {{ return {call}; }})", True
+
+    def _existing(self, statement: CallIntrinsic) -> str:
+        """The lanes that make a call: where elements are checked, those whose element there is."""
+        element = statement.arguments[0] if statement.arguments else None
+        if not isinstance(element, ElementRef) or not self._options.is_checked:
+            return self._mask
+        where = ", ".join(self._expressions.text(part) for part in (element.array, *element.indices))
+        return f"oxrt::checked({self._names.thread}, {self._mask}).inside({where})"
 
     def _report(self, statement: CallIntrinsic, arguments: list[str]) -> str:
         offered = statement.arguments[2:]

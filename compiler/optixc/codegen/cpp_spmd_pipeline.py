@@ -78,7 +78,7 @@ class SpmdFile(PipelineFile):
         for function in scalar:
             ScalarFunction(self._writer, function, self._types, self._signatures, options).write()
         for signature in signatures_called(self._pipeline):
-            self._writer.line(f"{self._callable_head(signature)};")
+            self._declare_callable(signature)
         for clone in order:
             if clone.function.kind is None:
                 self._writer.line(f"{self._clones.head(clone, self._signatures.inner_names(clone.function))};")
@@ -219,7 +219,18 @@ class SpmdFile(PipelineFile):
         for position, type_ in enumerate(signature.arguments):
             text = self._wide.name(type_, True)
             arguments.append(f"const {text}& a{position}")
+        if self._tells_place:
+            arguments.append("oxrt::Place place")
         return f"{self._wide.name(signature.result, True)} {name}_lanes({', '.join(arguments)})"
+
+    @property
+    def _tells_place(self) -> bool:
+        """Whether a callable's dispatcher may have to tell where the call stands."""
+        return self._pipeline.options.validation or callables_nest(self._pipeline)
+
+    def _declare_callable(self, signature: CallableSignature) -> None:
+        head = self._callable_head(signature)
+        self._writer.line(f"{head.removesuffix(')')} = oxrt::Place::current());" if self._tells_place else f"{head};")
 
     def _define_callable(self, signature: CallableSignature) -> None:
         """Runs the callables of the records that the lanes name; lanes without one get zero, and a fault in validation."""
@@ -232,16 +243,24 @@ class SpmdFile(PipelineFile):
             if callables_nest(self._pipeline):
                 self._guard_stack(is_void)
             self._writer.line("oxrt::RecordLanes<LANES> records;")
-            self._writer.line(f"const Mask found = oxrt::findCallables(thread, records, mask, index, {slot});")
+            place = ", place" if self._tells_place else ""
+            self._writer.line(f"const Mask found = oxrt::findCallables(thread, records, mask, index, {slot}{place});")
             with self._writer.block("if (oxrt::none(found))"):
                 self._writer.line("return;" if is_void else "return result;")
             self._writer.line(f"const Wide<int32_t> program = oxrt::recordPrograms(records, found, {slot});")
+            if self._pipeline.options.validation:
+                self._writer.line("Mask other = found;")
             for program in callables_with(self._pipeline, signature):
                 call = self._callable_call(program)
                 number = self._dispatch.number(program)
                 self._writer.line(f"if (const Mask own = found & (program == int32_t({number})); oxrt::any(own))")
                 with self._writer.indented():
                     self._writer.line(f"{call};" if is_void else f"oxrt::assign(own, result, {call});")
+                if self._pipeline.options.validation:
+                    self._writer.line(f"other = oxrt::without(other, program == int32_t({number}));")
+            if self._pipeline.options.validation:
+                mismatch = "oxrt::callableMismatch(thread.atLane(lane), place);"
+                self._writer.line(f"oxrt::eachLane(other, [&](int lane) {{ {mismatch} }});")
             if not is_void:
                 self._writer.line("return result;")
         self._writer.line()
@@ -251,7 +270,7 @@ class SpmdFile(PipelineFile):
         throws = bool(self._pipeline.options.exception_flags & EXCEPTION_FLAG_STACK_OVERFLOW)
         with self._writer.block("if (oxrt::isStackFull(*thread.thread))"):
             lane = "thread.atLane(oxrt::firstLane(mask))"
-            self._writer.line(f"oxrt::overflowStack<{'true' if throws else 'false'}>({lane}, oxrt::Place::current());")
+            self._writer.line(f"oxrt::overflowStack<{'true' if throws else 'false'}>({lane}, place);")
             if throws:
                 self._writer.line("oxrt::takeExceptions(thread, mask);")
             self._writer.line("return;" if is_void else "return result;")

@@ -243,7 +243,7 @@ class BuildInputInstances(BuildInput):
     The members are an array of n or one value for all; `transforms` is float32 (n, 3, 4). A uint64 array of handles is the quickest list.
     """
 
-    instances: Sequence[Any]
+    instances: Sequence[Any] | np.ndarray
     transforms: Any = field(default=None, kw_only=True)
     instance_ids: Any = field(default=None, kw_only=True)
     sbt_offsets: Any = field(default=None, kw_only=True)
@@ -337,7 +337,7 @@ def take_handle(value: Any, where: str) -> int:
     return int(handle)
 
 
-def take_handles(values: Sequence[Any]) -> np.ndarray[Any, Any]:
+def take_handles(values: Sequence[Any] | np.ndarray) -> np.ndarray[Any, Any]:
     """The handles of many traversables as uint64; each object is looked at once, however often it stands in the list."""
     if isinstance(values, np.ndarray) and values.dtype.kind in "iu" and values.ndim == 1:
         if values.size and int(values.min()) < 0:

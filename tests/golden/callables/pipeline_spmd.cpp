@@ -51,8 +51,10 @@ namespace number {
 enum : int32_t { raygen_materials, direct_callable_plain, direct_callable_stripes, continuation_callable_glow };
 }
 
-Wide<oxrt::float3> directCall_lanes(Lanes& thread, Mask mask, Wide<uint32_t> index, const Wide<oxrt::float2>& a0);
-Wide<oxrt::float3> continuationCall_lanes(Lanes& thread, Mask mask, Wide<uint32_t> index, const Wide<oxrt::float3>& a0);
+Wide<oxrt::float3> directCall_lanes(Lanes& thread, Mask mask, Wide<uint32_t> index, const Wide<oxrt::float2>& a0,
+        oxrt::Place place = oxrt::Place::current());
+Wide<oxrt::float3> continuationCall_lanes(Lanes& thread, Mask mask, Wide<uint32_t> index, const Wide<oxrt::float3>& a0,
+        oxrt::Place place = oxrt::Place::current());
 
 #line 23 "shader.py"
 void raygen_materials_lanes([[maybe_unused]] Lanes& thread, [[maybe_unused]] Mask mask) {
@@ -103,15 +105,15 @@ Wide<oxrt::float3> continuation_callable_glow_lanes([[maybe_unused]] Lanes& thre
     return 0.1f * color;
 }
 
-#line 107 "pipeline.cpp"
-Wide<oxrt::float3> directCall_lanes(Lanes& thread, Mask mask, Wide<uint32_t> index, const Wide<oxrt::float2>& a0) {
+#line 109 "pipeline.cpp"
+Wide<oxrt::float3> directCall_lanes(Lanes& thread, Mask mask, Wide<uint32_t> index, const Wide<oxrt::float2>& a0, oxrt::Place place) {
     Wide<oxrt::float3> result = oxrt::spread<LANES>(oxrt::float3{});
     if (oxrt::isStackFull(*thread.thread)) {
-        oxrt::overflowStack<false>(thread.atLane(oxrt::firstLane(mask)), oxrt::Place::current());
+        oxrt::overflowStack<false>(thread.atLane(oxrt::firstLane(mask)), place);
         return result;
     }
     oxrt::RecordLanes<LANES> records;
-    const Mask found = oxrt::findCallables(thread, records, mask, index, 0);
+    const Mask found = oxrt::findCallables(thread, records, mask, index, 0, place);
     if (oxrt::none(found)) {
         return result;
     }
@@ -123,14 +125,14 @@ Wide<oxrt::float3> directCall_lanes(Lanes& thread, Mask mask, Wide<uint32_t> ind
     return result;
 }
 
-Wide<oxrt::float3> continuationCall_lanes(Lanes& thread, Mask mask, Wide<uint32_t> index, const Wide<oxrt::float3>& a0) {
+Wide<oxrt::float3> continuationCall_lanes(Lanes& thread, Mask mask, Wide<uint32_t> index, const Wide<oxrt::float3>& a0, oxrt::Place place) {
     Wide<oxrt::float3> result = oxrt::spread<LANES>(oxrt::float3{});
     if (oxrt::isStackFull(*thread.thread)) {
-        oxrt::overflowStack<false>(thread.atLane(oxrt::firstLane(mask)), oxrt::Place::current());
+        oxrt::overflowStack<false>(thread.atLane(oxrt::firstLane(mask)), place);
         return result;
     }
     oxrt::RecordLanes<LANES> records;
-    const Mask found = oxrt::findCallables(thread, records, mask, index, 1);
+    const Mask found = oxrt::findCallables(thread, records, mask, index, 1, place);
     if (oxrt::none(found)) {
         return result;
     }
