@@ -151,18 +151,21 @@ class Dispatch:
         for position, type_ in enumerate(signature.arguments):
             text = self._types.name(type_)
             arguments.append(f"const {text}& a{position}" if is_reference_type(type_) else f"{text} a{position}")
-        if self._tells_place:
+        if self.tells_place:
             arguments.append("oxrt::Place place")
         return f"{self._types.name(signature.result)} {name}({', '.join(arguments)})"
 
     @property
-    def _tells_place(self) -> bool:
+    def tells_place(self) -> bool:
         """Whether a callable's dispatcher may have to tell where the call stands."""
         return self._pipeline.options.validation or self._callables_nest
 
     def declare_callable(self, signature: CallableSignature) -> None:
-        head = self.callable_head(signature)
-        self._writer.line(f"{head.removesuffix(')')} = oxrt::Place::current());" if self._tells_place else f"{head};")
+        self.declare_with_place(self.callable_head(signature))
+
+    def declare_with_place(self, head: str) -> None:
+        """Declares a callable's dispatcher; where it takes a place, callers need not name theirs."""
+        self._writer.line(f"{head.removesuffix(')')} = oxrt::Place::current());" if self.tells_place else f"{head};")
 
     def define_callable(self, signature: CallableSignature) -> None:
         """Runs the callable of record `index`; without one the result is zero, and a fault in validation."""
@@ -172,7 +175,7 @@ class Dispatch:
             if self._callables_nest:
                 throws = "true" if self._pipeline.options.exception_flags & EXCEPTION_FLAG_STACK_OVERFLOW else "false"
                 self._writer.line(f"if (!oxrt::enterCallable<{throws}>(thread, place)) return{result};")
-            place = ", place" if self._tells_place else ""
+            place = ", place" if self.tells_place else ""
             self._writer.line(f"const OxrtRecordHeader* record = oxrt::findCallable(thread, index, {slot}{place});")
             with self._writer.block(f"switch (record ? record->programs[{slot}] : OXRT_NO_PROGRAM)"):
                 for program in callables_with(self._pipeline, signature):

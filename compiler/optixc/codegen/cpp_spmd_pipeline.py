@@ -78,7 +78,7 @@ class SpmdFile(PipelineFile):
         for function in scalar:
             ScalarFunction(self._writer, function, self._types, self._signatures, options).write()
         for signature in signatures_called(self._pipeline):
-            self._declare_callable(signature)
+            self._dispatch.declare_with_place(self._callable_head(signature))
         for clone in order:
             if clone.function.kind is None:
                 self._writer.line(f"{self._clones.head(clone, self._signatures.inner_names(clone.function))};")
@@ -219,18 +219,9 @@ class SpmdFile(PipelineFile):
         for position, type_ in enumerate(signature.arguments):
             text = self._wide.name(type_, True)
             arguments.append(f"const {text}& a{position}")
-        if self._tells_place:
+        if self._dispatch.tells_place:
             arguments.append("oxrt::Place place")
         return f"{self._wide.name(signature.result, True)} {name}_lanes({', '.join(arguments)})"
-
-    @property
-    def _tells_place(self) -> bool:
-        """Whether a callable's dispatcher may have to tell where the call stands."""
-        return self._pipeline.options.validation or callables_nest(self._pipeline)
-
-    def _declare_callable(self, signature: CallableSignature) -> None:
-        head = self._callable_head(signature)
-        self._writer.line(f"{head.removesuffix(')')} = oxrt::Place::current());" if self._tells_place else f"{head};")
 
     def _define_callable(self, signature: CallableSignature) -> None:
         """Runs the callables of the records that the lanes name; lanes without one get zero, and a fault in validation."""
@@ -243,7 +234,7 @@ class SpmdFile(PipelineFile):
             if callables_nest(self._pipeline):
                 self._guard_stack(is_void)
             self._writer.line("oxrt::RecordLanes<LANES> records;")
-            place = ", place" if self._tells_place else ""
+            place = ", place" if self._dispatch.tells_place else ""
             self._writer.line(f"const Mask found = oxrt::findCallables(thread, records, mask, index, {slot}{place});")
             with self._writer.block("if (oxrt::none(found))"):
                 self._writer.line("return;" if is_void else "return result;")
