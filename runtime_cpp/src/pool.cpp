@@ -72,7 +72,11 @@ bool Pool::wait(SharedWork& work, std::chrono::nanoseconds timeout, bool useSpar
     std::chrono::nanoseconds spin = workersRun || !useSpare ? callerSpin : 0ns;
     if (timeout >= 0ns) spin = std::min(spin, timeout);
     if (spinUntil(finished, spin)) return true;
-    if (useSpare && !wakeSpare()) help(work);
+    if (useSpare) {
+        if (!wakeSpare()) help(work);
+        // Alone the spare does all the work, which may be as short as what workers do within the spin above.
+        else if (!workersRun && spinUntil(finished, timeout >= 0ns ? std::min(callerSpin, timeout) : callerSpin)) return true;
+    }
 
     while (!finished()) {
         std::chrono::nanoseconds left = -1ns;
@@ -143,7 +147,10 @@ void Pool::spareLoop()
     for (;;) {
         const std::uint32_t seen = spareEpoch;
         if (stopping) return;
-        if (!runOne()) futexWait(spareEpoch, seen, -1ns);
+        if (runOne()) continue;
+        // Without workers every launch comes here: the next one need not wake it.
+        if (threadCount == 1 && spinUntil([&] { return spareEpoch.load(std::memory_order_acquire) != seen; }, workerSpin)) continue;
+        futexWait(spareEpoch, seen, -1ns);
     }
 }
 
