@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 
 import optixc as ox
-from benchmarks.measure import Clock, interleave
+from benchmarks.measure import Clock, LaunchContender, interleave
 from benchmarks.ours import shader_module
 from benchmarks.scenes import Floats, SceneMissing, scenes_folder
 
@@ -94,7 +94,7 @@ def measure(lanes: tuple[int, ...] = (1, 8, 16), rounds: int = ROUNDS, clock: Cl
         table = ox.ShaderBindingTable(raygen=raygen.record(), miss=[miss.record()], hitgroup=[hit.record()])
         for width in lanes:
             pipeline = context.pipeline_create([raygen, miss, hit], simd=width, options=ox.PipelineCompileOptions(uses_motion_blur=True))
-            contenders = [_Run(name, pipeline, table, _params(shader, scene)) for name, scene in made.items()]
+            contenders = [LaunchContender(name, pipeline, table, _params(shader, scene), SIZE, SIZE) for name, scene in made.items()]
             timings = interleave(contenders, rounds, clock)
             allowed = 1.6 if width > 1 and rays == "coherent" else 1.25
             found += [GraphTime(name, rays, width, 1.0 / timings.speed_up(name, "flattened"), allowed) for name in GRAPHS]
@@ -104,22 +104,6 @@ def measure(lanes: tuple[int, ...] = (1, 8, 16), rounds: int = ROUNDS, clock: Cl
 def _params(shader: Any, scene: Any) -> Any:
     image = np.zeros((SIZE, SIZE), np.float32)
     return shader.Params(image=image, scene=scene.handle, eye=(0.0, 0.0, 9.0), reach=3.0, time=0.5)
-
-
-@dataclass
-class _Run:
-    """One graph as a contender."""
-
-    name: str
-    pipeline: Any
-    table: Any
-    params: Any
-
-    def run(self) -> float:
-        """Seconds of a launch."""
-        start = time.perf_counter()
-        self.pipeline.launch(self.params, self.table, width=SIZE, height=SIZE)
-        return time.perf_counter() - start
 
 
 def clock_seconds(clock: Clock) -> float:
@@ -169,9 +153,9 @@ def measure_updates(context: ox.DeviceContext, clock: Clock = Clock.WALL, update
     ]
     table = ox.ShaderBindingTable(raygen=groups[0].record(), miss=[groups[1].record()], hitgroup=[groups[2].record()])
     pipeline = context.pipeline_create(groups, simd=1)
-    timings = interleave(
-        [_Run(name, pipeline, table, _params(shader, scene)) for name, scene in (("updated", built), ("rebuilt", rebuilt))], 3, clock
-    )
+    scenes_by_name = {"updated": built, "rebuilt": rebuilt}
+    contenders = [LaunchContender(name, pipeline, table, _params(shader, one), SIZE, SIZE) for name, one in scenes_by_name.items()]
+    timings = interleave(contenders, 3, clock)
     return Updates(build, found, timings.speed_up("rebuilt", "updated"))
 
 

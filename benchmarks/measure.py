@@ -7,7 +7,9 @@ import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from enum import Enum
-from typing import Protocol
+from typing import Any, Protocol
+
+import optixc as ox
 
 
 class Clock(Enum):
@@ -23,6 +25,24 @@ class Contender(Protocol):
     name: str
 
     def run(self) -> float: ...
+
+
+@dataclass
+class LaunchContender:
+    """A pipeline of ours with what a launch takes."""
+
+    name: str
+    pipeline: ox.Pipeline
+    table: ox.ShaderBindingTable
+    params: Any
+    width: int
+    height: int
+
+    def run(self) -> float:
+        """Launches once; the seconds that it took."""
+        start = time.perf_counter()
+        self.pipeline.launch(self.params, self.table, width=self.width, height=self.height)
+        return time.perf_counter() - start
 
 
 @dataclass

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import argparse
 import dataclasses
-import time
 from dataclasses import dataclass
 from typing import Any
 
@@ -16,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 import optixc as ox
-from benchmarks.measure import Clock, interleave
+from benchmarks.measure import Clock, LaunchContender, interleave
 from benchmarks.ours import shader_module
 from benchmarks.scenes import SUN, Scene, SceneMissing, leaf_scene, scenes_folder
 
@@ -33,23 +32,6 @@ class Saving:
     known: float
     speed_up: float
     same_image: bool
-
-
-@dataclass
-class _Run:
-    """One structure as a contender."""
-
-    name: str
-    pipeline: Any
-    table: Any
-    params: Any
-    size: int
-
-    def run(self) -> float:
-        """Seconds of a launch."""
-        start = time.perf_counter()
-        self.pipeline.launch(self.params, self.table, width=self.size, height=self.size)
-        return time.perf_counter() - start
 
 
 def leaf_picture() -> NDArray[np.uint8]:
@@ -90,7 +72,9 @@ def measure(scene: Scene, lanes: tuple[int, ...], rounds: int, size: int, clock:
                 [raygen, *misses, hit], max_trace_depth=2, simd=width, options=options, bound_values={"counting": counting}
             )
             contenders = [
-                _Run(name, pipeline, table, _params(shader, structure, camera, scene, runs[name], size, counting), size)
+                LaunchContender(
+                    name, pipeline, table, _params(shader, structure, camera, scene, runs[name], size, counting), size, size
+                )
                 for name, structure in structures.items()
             ]
             if counting:

@@ -5,7 +5,6 @@ from __future__ import annotations
 import importlib
 import os
 import sys
-import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
@@ -17,6 +16,7 @@ import numpy as np
 
 import optixc as ox
 from benchmarks.handwritten import floor_box, sphere_boxes
+from benchmarks.measure import LaunchContender
 from benchmarks.scenes import GLASS, MATERIALS, METAL, QUAD_TRIANGLES, SUN, Floats, Scene
 from benchmarks.workloads import Workload
 
@@ -36,21 +36,11 @@ class Programs:
 
 
 @dataclass
-class Ours:
+class Ours(LaunchContender):
     """A workload compiled by optixc, ready to run."""
 
-    name: str
-    pipeline: ox.Pipeline
-    params: Any
-    table: ox.ShaderBindingTable
     image: Floats
     keep: tuple[Any, ...]
-
-    def run(self) -> float:
-        """Renders once; the seconds that it took."""
-        start = time.perf_counter()
-        self.pipeline.launch(self.params, self.table, width=self.image.shape[1], height=self.image.shape[0])
-        return time.perf_counter() - start
 
 
 @contextmanager
@@ -196,4 +186,5 @@ def ours(context: ox.DeviceContext, scene: Scene, workload: Workload, lanes: int
         miss=[group.record() for group in programs.misses],
         hitgroup=[group.record() if data is None else group.record(data) for group, data in programs.hits],
     )
-    return Ours(f"ours {lanes}{'' if compiler is None else ' ' + compiler}", pipeline, params, table, image, (accel, context))
+    name = f"ours {lanes}{'' if compiler is None else ' ' + compiler}"
+    return Ours(name, pipeline, table, params, width, height, image, (accel, context))

@@ -9,7 +9,6 @@ from __future__ import annotations
 import argparse
 import subprocess
 import tempfile
-import time
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
@@ -18,7 +17,7 @@ from typing import Any
 import numpy as np
 
 import optixc as ox
-from benchmarks.measure import Clock, interleave
+from benchmarks.measure import Clock, LaunchContender, interleave
 from benchmarks.ours import SHADERS, shader_module
 from optixc.stdlib import shapes
 
@@ -47,22 +46,6 @@ class Row:
         return f"{found} (wanted: {wanted}){verdict}"
 
 
-@dataclass
-class Contender:
-    """A pipeline with its table and parameters."""
-
-    name: str
-    pipeline: ox.Pipeline
-    table: ox.ShaderBindingTable
-    params: Any
-
-    def run(self) -> float:
-        """Seconds of a launch."""
-        start = time.perf_counter()
-        self.pipeline.launch(self.params, self.table, width=SIZE, height=SIZE)
-        return time.perf_counter() - start
-
-
 class Bench:
     """One context and the scenes; makes contenders and compares them."""
 
@@ -76,7 +59,7 @@ class Bench:
 
     def contender(
         self, name: str, lanes: int, raygen: str, hit: str, misses: tuple[str | None, ...] = (None,), **settings: Any
-    ) -> Contender:
+    ) -> LaunchContender:
         """Programs of the shader file by their short names."""
         create, module = self.context.program_group_create, self.module
         start, surface = create(raygen=module[f"__raygen__{raygen}"]), create(closesthit=module[f"__closesthit__{hit}"])
@@ -87,20 +70,20 @@ class Bench:
         pipeline = self.context.pipeline_create([start, surface, *missed, *callables], simd=lanes, **settings)
         records = [callables[k % 2].record(self.shader.Factor(3.0 + k, 0.1 * k)) for k in range(4)] if callables else []
         table = ox.ShaderBindingTable(start.record(), [miss.record() for miss in missed], [surface.record()], records)
-        return Contender(name, pipeline, table, self.params(scene))
+        return LaunchContender(name, pipeline, table, self.params(scene), SIZE, SIZE)
 
     def params(self, scene: ox.Accel) -> Any:
         """Parameters with an image of their own."""
         return self.shader.Params(image=np.zeros((SIZE, SIZE, 3), np.float32), scene=scene, eye=EYE, shadows=False)
 
-    def ratio(self, contender: Contender, baseline: Contender) -> float:
+    def ratio(self, contender: LaunchContender, baseline: LaunchContender) -> float:
         """Seconds of one over those of the other; their pictures are the same."""
         timings = interleave([contender, baseline], self.rounds, self.clock)
         check_same(contender, baseline)
         return 1.0 / timings.speed_up(contender.name, baseline.name)
 
 
-def check_same(one: Contender, other: Contender) -> None:
+def check_same(one: LaunchContender, other: LaunchContender) -> None:
     """Stops where pictures differ, but for rays along edges: at most one in a thousand."""
     differing = (np.abs(one.params.image - other.params.image) > 2e-3).any(axis=-1).mean()
     if differing > 1e-3:
@@ -153,7 +136,7 @@ def dispatch(bench: Bench, lanes: int) -> Iterator[Row]:
             sbt_index_offsets=numbers.astype(np.uint32))])
         tables = [ox.ShaderBindingTable(start.record(), [miss.record()], [group.record() for group in groups])
                   for groups in ([hits[0]] * HIT_GROUPS, hits)]
-        made = [Contender(name, pipeline, table, bench.params(scene)) for name, pipeline, table in (
+        made = [LaunchContender(name, pipeline, table, bench.params(scene), SIZE, SIZE) for name, pipeline, table in (
             ("one", single, tables[0]), ("32", widths[lanes], tables[1]), ("32 scalar", widths[1], tables[1]))]
         timings = interleave(made, bench.rounds, bench.clock)
         check_same(made[1], made[2])

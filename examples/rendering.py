@@ -28,6 +28,12 @@ def options(description: str | None, output: str, width: int, height: int, sampl
     return parser
 
 
+def save(image: np.ndarray, arguments: argparse.Namespace) -> None:
+    """Writes the picture as the options say, and tells where it is."""
+    ox.write_image(arguments.output, image, exposure=arguments.exposure)
+    print(f"  picture  {arguments.output}")
+
+
 def pinhole(eye: Sequence[float], target: Sequence[float], vertical_fov: float, aspect: float) -> Pinhole:
     """A camera as half axes of its image plane; y is up, the field of view in degrees, `aspect` is width over height."""
     w = np.subtract(target, eye)

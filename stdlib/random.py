@@ -148,3 +148,9 @@ def sobol_owen_2d(index: uint32, seed: uint32) -> float2:
     x = owen_scramble(ox.reverse_bits(shuffled), hash_uint(seed ^ uint32(0x68BC21EB)))
     y = owen_scramble(sobol_second(shuffled), hash_uint(seed ^ uint32(0x02E5BE93)))
     return float2(unit_float(x), unit_float(y))
+
+
+@ox.device
+def pixel_sample_2d(sample: uint32, pixel: uint32, dimension: uint32) -> float2:
+    """Point `sample` of the sequence that a pixel has for one purpose, its `dimension`: `sobol_owen_2d` with a seed for the pair."""
+    return sobol_owen_2d(sample, hash_uint(pixel) + dimension * uint32(0x9E3779B9))

@@ -12,7 +12,7 @@ import shader
 import optixc as ox
 
 sys.path.append(str(Path(__file__).resolve().parents[1]))
-from rendering import Build, accumulate, pinhole, print_statistics, timed_build
+from rendering import Build, accumulate, pinhole, print_statistics, save, timed_build
 
 EYE = (7.0, 2.7, -6.2)
 TARGET = (2.9, 1.05, 1.2)
@@ -128,8 +128,7 @@ def main() -> None:
     arguments = parser.parse_args()
     print("Whitted's spheres")
     image = render(arguments.size, arguments.size, arguments.samples, verbose=True)
-    ox.write_image(arguments.output, image, exposure=arguments.exposure)
-    print(f"  picture  {arguments.output}")
+    save(image, arguments)
 
 
 if __name__ == "__main__":

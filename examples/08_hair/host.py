@@ -14,7 +14,7 @@ from optixc.stdlib.hair import Hair
 from optixc.stdlib.light import RectangleLight
 
 sys.path.append(str(Path(__file__).resolve().parents[1]))
-from rendering import Build, accumulate, options, pinhole, print_statistics, timed_build
+from rendering import Build, accumulate, options, pinhole, print_statistics, save, timed_build
 
 EYE, TARGET, VERTICAL_FOV = (0.0, -1.18, 7.2), (0.0, -1.18, 0.0), 26.0
 # Absorption per radius by its melanins: eumelanin makes hair dark, pheomelanin red
@@ -95,8 +95,7 @@ def main() -> None:
     arguments = parser.parse_args()
     print("three tresses")
     image = render(arguments.width, arguments.height, arguments.samples, arguments.strands)
-    ox.write_image(arguments.output, image, exposure=arguments.exposure)
-    print(f"  picture  {arguments.output}")
+    save(image, arguments)
 
 
 if __name__ == "__main__":

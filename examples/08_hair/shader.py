@@ -11,7 +11,7 @@ from optixc.stdlib.frame import Frame, frame_from_normal, to_local, to_world
 from optixc.stdlib.hair import Hair, fibre_offset, hair_modes, hair_sample_modes, hair_value
 from optixc.stdlib.light import LightSample, RectangleLight, rectangle_light
 from optixc.stdlib.math import INV_PI, max_component
-from optixc.stdlib.random import hash_uint, sobol_owen_2d
+from optixc.stdlib.random import pixel_sample_2d
 from optixc.stdlib.sampling import cosine_hemisphere
 from optixc.stdlib.self_intersection import offset_ray_origin
 
@@ -78,7 +78,7 @@ params = ox.launch_params(Params)
 @ox.device
 def numbers(pixel: uint32, dimension: uint32) -> float2:
     """Two numbers of this sample for one purpose."""
-    return sobol_owen_2d(uint32(params.sample), hash_uint(pixel) + dimension * uint32(0x9E3779B9))
+    return pixel_sample_2d(uint32(params.sample), pixel, dimension)
 
 
 @ox.device

@@ -14,7 +14,7 @@ import shader
 import optixc as ox
 
 sys.path.append(str(Path(__file__).resolve().parents[1]))
-from rendering import Build, accumulate, options, pinhole, print_statistics, timed_build
+from rendering import Build, accumulate, options, pinhole, print_statistics, save, timed_build
 
 EYE, TARGET, VERTICAL_FOV = (0.3, 1.75, 8.6), (0.1, 1.52, 0.0), 31.0
 UP = np.array([0.0, 1.0, 0.0])
@@ -140,8 +140,7 @@ def main() -> None:
     arguments = parser.parse_args()
     print("a garden in the wind")
     image = render(arguments.width, arguments.height, arguments.samples, arguments.shutter)
-    ox.write_image(arguments.output, image, exposure=arguments.exposure)
-    print(f"  picture  {arguments.output}")
+    save(image, arguments)
 
 
 if __name__ == "__main__":

@@ -8,7 +8,7 @@ from optixc import float2, float3, float4, uint32
 from optixc.stdlib.camera import Pinhole, pinhole_direction
 from optixc.stdlib.frame import frame_from_normal, to_world
 from optixc.stdlib.math import PI, safe_acos
-from optixc.stdlib.random import hash_uint, sobol_owen_2d
+from optixc.stdlib.random import pixel_sample_2d
 from optixc.stdlib.sampling import cosine_hemisphere, uniform_cone
 from optixc.stdlib.self_intersection import offset_ray_origin
 
@@ -68,7 +68,7 @@ params = ox.launch_params(Params)
 @ox.device
 def numbers(pixel: uint32, dimension: uint32) -> float2:
     """Two numbers of this sample for one purpose."""
-    return sobol_owen_2d(uint32(params.sample), hash_uint(pixel) + dimension * uint32(0x9E3779B9))
+    return pixel_sample_2d(uint32(params.sample), pixel, dimension)
 
 
 @ox.device

@@ -13,7 +13,7 @@ import shader
 import optixc as ox
 
 sys.path.append(str(Path(__file__).resolve().parents[1]))
-from rendering import Build, accumulate, options, pinhole, print_statistics, timed_build
+from rendering import Build, accumulate, options, pinhole, print_statistics, save, timed_build
 
 EYE, TARGET, VERTICAL_FOV = (230.0, 50.0, 770.0), (-40.0, 10.0, 300.0), 38.0
 SUN = np.array([-0.62, 0.42, -0.18]) / np.linalg.norm([-0.62, 0.42, -0.18])
@@ -97,8 +97,7 @@ def main() -> None:
     arguments = parser.parse_args()
     print("a forest")
     image = render(arguments.width, arguments.height, arguments.samples, arguments.trees)
-    ox.write_image(arguments.output, image, exposure=arguments.exposure)
-    print(f"  picture  {arguments.output}")
+    save(image, arguments)
 
 
 if __name__ == "__main__":

@@ -14,7 +14,7 @@ import shader
 import optixc as ox
 
 sys.path.append(str(Path(__file__).resolve().parents[1]))
-from rendering import Build, accumulate, options, pinhole, print_statistics, timed_build
+from rendering import Build, accumulate, options, pinhole, print_statistics, save, timed_build
 
 EYE, TARGET, VERTICAL_FOV = (1.1, 0.75, 6.4), (0.05, 1.85, 0.0), 39.0
 SUN = np.array([0.72, 0.62, -0.12]) / np.linalg.norm([0.72, 0.62, -0.12])
@@ -117,8 +117,7 @@ def main() -> None:
     arguments = parser.parse_args()
     print("a maple")
     image = render(arguments.width, arguments.height, arguments.samples, arguments.leaves, arguments.level)
-    ox.write_image(arguments.output, image, exposure=arguments.exposure)
-    print(f"  picture  {arguments.output}")
+    save(image, arguments)
 
 
 if __name__ == "__main__":
