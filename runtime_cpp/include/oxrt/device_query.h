@@ -43,14 +43,17 @@ OXRT_INLINE EmbreeRow embreeRow(float3 xyz, float w) {
     return EmbreeRow{xyz.x, xyz.y, xyz.z, w};
 }
 
-OXRT_INLINE void setEmbreeRay(RTCRay& target, const Ray& ray) {
+OXRT_INLINE void setEmbreeRay(RTCRay& target, const float3& origin, float tnear, const float3& direction, float time, float tfar, uint32_t mask) {
     EmbreeRow* rows = reinterpret_cast<EmbreeRow*>(&target);
-    rows[0] = embreeRow(ray.origin, nextUp(ray.tmin));
-    rows[1] = embreeRow(ray.direction, ray.time);
-    target.tfar = nextDown(ray.tmax);
-    target.mask = ray.mask;
+    rows[0] = embreeRow(origin, tnear);
+    rows[1] = embreeRow(direction, time);
+    target.tfar = tfar;
+    target.mask = mask;
     target.id = 0;
     target.flags = 0;
+}
+OXRT_INLINE void setEmbreeRay(RTCRay& target, const Ray& ray) {
+    setEmbreeRay(target, ray.origin, nextUp(ray.tmin), ray.direction, ray.time, nextDown(ray.tmax), ray.mask);
 }
 
 /* Whether built-in primitives may need a decision under these ray flags. */

@@ -67,7 +67,7 @@ template <class Programs, int W> OXRT_INLINE void runIntersection(CandidateLanes
         stopTraversals(ray, mask & ray.thread->thrown);
 }
 
-/* One custom primitive, for the lanes to which Embree offers it. `hit` is null in occlusion queries. */
+/* One custom primitive, for the lanes to which Embree offers it. */
 template <class Programs, int W>
 OXRT_INLINE void runIntersections(CandidateLanes<W>& ray, Lanes<bool, W> mask, uint32_t instance, uint32_t geometryId, uint32_t primitive) {
     using Scalar = typename Programs::Scalar;

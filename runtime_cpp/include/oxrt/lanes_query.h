@@ -75,13 +75,8 @@ template <bool ANY, int W> OXRT_INLINE Lanes<bool, W> traverseSingly(RayLanes<W>
         clearHits(ray);
     eachLane(mask, [&](int lane) {
         RTCRayHit query;
-        EmbreeRow* rows = reinterpret_cast<EmbreeRow*>(&query.ray);
-        rows[0] = EmbreeRow{rays.org_x[lane], rays.org_y[lane], rays.org_z[lane], rays.tnear[lane]};
-        rows[1] = EmbreeRow{rays.dir_x[lane], rays.dir_y[lane], rays.dir_z[lane], rays.time[lane]};
-        query.ray.tfar = rays.tfar[lane];
-        query.ray.mask = rays.mask[lane];
-        query.ray.id = 0;
-        query.ray.flags = 0;
+        setEmbreeRay(query.ray, {rays.org_x[lane], rays.org_y[lane], rays.org_z[lane]}, rays.tnear[lane],
+                     {rays.dir_x[lane], rays.dir_y[lane], rays.dir_z[lane]}, rays.time[lane], rays.tfar[lane], rays.mask[lane]);
         if constexpr (ANY) {
             services.occluded1(ray.root->scene, &query.ray, nullptr);
             found |= uint32_t(query.ray.tfar < 0.0f) << lane;
