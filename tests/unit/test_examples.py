@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+import importlib
 import importlib.util
 import os
 import re
 import subprocess
 import sys
+import time
 from pathlib import Path
-from types import ModuleType
+from types import ModuleType, SimpleNamespace
 
 import numpy as np
 import pytest
@@ -32,6 +34,20 @@ def run(example: str, *arguments: object) -> str:
     assert done.returncode == 0, done.stdout + done.stderr
     assert done.stderr == "", "progress bars stay silent when the output is no terminal"
     return done.stdout
+
+
+def test_a_long_render_is_silent_without_a_terminal(monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]) -> None:
+    monkeypatch.syspath_prepend(str(EXAMPLES))
+    rendering = importlib.import_module("rendering")
+
+    class Slow:
+        """Launches that take longer together than a bar waits before it shows."""
+
+        def launch(self, params: object, table: object, width: int, height: int) -> None:
+            time.sleep(0.8)
+
+    assert rendering.accumulate(Slow(), SimpleNamespace(samples=4), None, (1, 1), "slow") >= 3.2
+    assert capfd.readouterr() == ("", "")
 
 
 def linear(path: Path) -> np.ndarray:
