@@ -79,6 +79,14 @@ def test_emitted_forms(shader: Path, tmp_path: Path, capsys: pytest.CaptureFixtu
     assert not (tmp_path / "shader.so").exists()
 
 
+def test_a_file_named_in_several_ways_is_the_same_file(shader: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """What the cache noted of the absolute path holds for relative ones, from any folder."""
+    (shader.parent / "elsewhere").mkdir()
+    for path, folder in ((str(shader), "."), ("shader.py", "."), ("./shader.py", "."), ("../shader.py", "elsewhere")):
+        monkeypatch.chdir(shader.parent / folder)
+        assert cli.main([path, "--emit", "cpp"]) == 0, path
+
+
 def test_print_after_a_pass(shader: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert cli.main(["shader.py", "--print-after", "specialize", "--bind", "scale=3.0"]) == 0
     assert "3.0" in capsys.readouterr().out

@@ -12,7 +12,7 @@ STDLIB = Path(__file__).resolve().parent.parent / "stdlib"
 
 
 class FileImports:
-    """Reads each helper file once; `dependencies` lists all files that were read, in order."""
+    """Reads each helper file once; `dependencies` lists the absolute paths of all files that were read, in order."""
 
     def __init__(self, diagnostics: Diagnostics, include_dirs: tuple[Path, ...]) -> None:
         self.dependencies: list[str] = []
@@ -31,7 +31,7 @@ class FileImports:
             if resolved in self._files:
                 return self._files[resolved]
             if candidate.is_file():
-                self.dependencies.append(str(candidate))
+                self.dependencies.append(str(candidate.absolute()))
                 self._files[resolved] = None
                 self._files[resolved] = parse_path(candidate, self._diagnostics)
                 return self._files[resolved]
