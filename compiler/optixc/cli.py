@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import argparse
 import ast
+import io
 import json
 import os
 import shutil
@@ -37,13 +38,18 @@ def main(arguments: Sequence[str] | None = None) -> int:
     """Runs the command and gives its exit code."""
     parser = _parser()
     chosen = parser.parse_args(arguments)
+    if isinstance(sys.stdout, io.TextIOWrapper):
+        # What is printed holds names and texts of the shader, which a terminal's encoding may lack.
+        sys.stdout.reconfigure(encoding="utf-8", errors="surrogateescape")
     try:
         if chosen.print_config:
             print(_configuration())
-            return 0
-        if chosen.shader is None:
+        elif chosen.shader is None:
             parser.error("name a shader file (or --version, --print-config)")
-        return _compile(chosen)
+        else:
+            _compile(chosen)
+        sys.stdout.flush()
+        return 0
     except CompileError as error:
         print(error, file=sys.stderr)
         return EXIT_SHADER
@@ -57,6 +63,11 @@ def main(arguments: Sequence[str] | None = None) -> int:
         # Whoever reads the output (`| head`) has seen enough; what is left must not fail when Python flushes it.
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return 0
+    except OSError as error:
+        # Only standard output is written without a name; a flush at the end of the process would fail once more.
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        print(f"optixc: standard output cannot be written: {error.strerror}", file=sys.stderr)
+        return EXIT_USAGE
     except KeyboardInterrupt:
         return EXIT_INTERRUPTED
 
@@ -65,10 +76,15 @@ def _parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(prog="optixc", description="Compiles shader programs in restricted Python to a shared object.")
     parser.add_argument("shader", nargs="?", type=Path, help="the shader file; it is parsed, never run")
     parser.add_argument(
-        "-o", dest="output", type=Path, metavar="STEM", help="write STEM.so, STEM.h and STEM.json (default: the shader's name)"
+        "-o",
+        dest="output",
+        metavar="STEM",
+        help="write STEM.so, STEM.h and STEM.json (default: the shader's name); FOLDER/ keeps the shader's name, an ending .so may stay",
     )
     parser.add_argument("--emit", choices=EMIT_FORMS, help="print this form on standard output and write nothing")
-    parser.add_argument("--print-after", metavar="PASS", help="print the IR after this pass on standard output")
+    parser.add_argument(
+        "--print-after", metavar="PASS", help=f"print the IR after this pass on standard output: {', '.join(driver.pass_names())}"
+    )
     parser.add_argument("--bind", action="append", default=[], metavar="NAME=VALUE", help="make a launch parameter a constant")
     parser.add_argument(
         "-I", dest="include_dirs", action="append", default=[], type=Path, metavar="DIR", help="look for helper files here too"
@@ -77,7 +93,12 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument(
         "--target", choices=TARGETS, default="native", help="instruction set (default: this machine's); x86-64 takes kernels for each level"
     )
-    parser.add_argument("--math", choices=("precise", "fast"), default="precise")
+    parser.add_argument(
+        "--math",
+        choices=("precise", "fast"),
+        default="precise",
+        help="fast takes denormals as zero and fuses multiplications with additions (default: precise)",
+    )
     parser.add_argument(
         "--max-trace-depth", type=int, default=1, metavar="N", help=f"nesting of traces, 0 to {MAX_TRACE_DEPTH} (default: 1)"
     )
@@ -92,12 +113,12 @@ def _parser() -> argparse.ArgumentParser:
     return parser
 
 
-def _compile(chosen: argparse.Namespace) -> int:
+def _compile(chosen: argparse.Namespace) -> None:
     if not chosen.shader.is_file():
         raise FileIoError(f"{chosen.shader} is not a file")
     if chosen.emit == "ast":
         print(ast.dump(parse_tree(chosen.shader), indent=2))
-        return 0
+        return
     options = CompileOptions(
         max_trace_depth=chosen.max_trace_depth,
         simd="auto" if chosen.simd == "auto" else int(chosen.simd),
@@ -112,22 +133,22 @@ def _compile(chosen: argparse.Namespace) -> int:
     unit = driver.open_file(chosen.shader, chosen.include_dirs, store)
     names = [program["name"] for program in unit.programs]
     if chosen.emit is not None or chosen.print_after is not None:
-        return _emit(chosen, unit, names, options, store)
-    _write(chosen, unit, names, options, store)
-    return 0
+        _emit(chosen, unit, names, options, store)
+    else:
+        _write(chosen, unit, names, options, store)
 
 
-def _emit(chosen: argparse.Namespace, unit: driver.Unit, names: list[str], options: CompileOptions, store: Cache) -> int:
+def _emit(chosen: argparse.Namespace, unit: driver.Unit, names: list[str], options: CompileOptions, store: Cache) -> None:
     result = unit.result
     if chosen.print_after is not None and chosen.print_after not in driver.pass_names():
         raise InvalidValueError(f"--print-after takes one of {', '.join(driver.pass_names())}, not {chosen.print_after!r}")
     options = driver.variants(options)[-1]
     if chosen.emit == "types":
         print(print_types(result.checked))
-        return 0
+        return
     if chosen.emit == "ir" and chosen.print_after is None:
         print(print_module(result.module))
-        return 0
+        return
     emitted = driver.emit([result.module], names, options, lambda name, pipeline: _print_pass(chosen.print_after, name, pipeline))
     if chosen.emit == "asm":
         print(toolchain.compile_assembly(emitted.text, toolchain.find_compiler(store.memory), driver.recipe(options)))
@@ -137,7 +158,6 @@ def _emit(chosen: argparse.Namespace, unit: driver.Unit, names: list[str], optio
         print(emitted.text)
     elif chosen.emit == "ir":
         print(print_module(emitted.pipeline))
-    return 0
 
 
 def _print_pass(wanted: str | None, name: str, pipeline: nodes.Pipeline) -> None:
@@ -146,22 +166,36 @@ def _print_pass(wanted: str | None, name: str, pipeline: nodes.Pipeline) -> None
 
 
 def _write(chosen: argparse.Namespace, unit: driver.Unit, names: list[str], options: CompileOptions, store: Cache) -> None:
-    stem: Path = chosen.output or Path(chosen.shader.stem)
+    stem = _stem(chosen)
     built = driver.build([unit], names, options, store)
     emitted = driver.emit([unit.result.module], names, driver.variants(options)[-1])
     outputs = [stem.with_name(stem.name + suffix) for suffix in (".so", ".h", ".json")]
     try:
         stem.parent.mkdir(parents=True, exist_ok=True)
         shutil.copyfile(built.library, outputs[0])
-        outputs[1].write_text(emit_header(emitted.pipeline, stem.name))
-        outputs[2].write_text(json.dumps(_manifest(unit, emitted.pipeline, built), indent=2) + "\n")
+        outputs[1].write_text(emit_header(emitted.pipeline, stem.name), encoding="utf-8")
+        outputs[2].write_text(json.dumps(_manifest(unit, emitted.pipeline, built), indent=2) + "\n", encoding="utf-8")
         if chosen.depfile is not None:
             files = [str(chosen.shader), *unit.result.dependencies]
             chosen.depfile.write_text(
-                f"{' '.join(map(_make_word, map(str, outputs)))}: {' '.join(map(_make_word, dict.fromkeys(files)))}\n"
+                f"{' '.join(map(_make_word, map(str, outputs)))}: {' '.join(map(_make_word, dict.fromkeys(files)))}\n",
+                encoding="utf-8",
+                errors="surrogateescape",
             )
     except OSError as error:
         raise FileIoError(f"{error.filename or stem} cannot be written: {error.strerror}") from error
+
+
+def _stem(chosen: argparse.Namespace) -> Path:
+    """What the outputs are named after, without a suffix."""
+    shader: Path = chosen.shader
+    output: str | None = chosen.output
+    if output is None or output.endswith("/"):
+        return Path(output or "") / shader.stem
+    stem = Path(output.removesuffix(".so"))
+    if not stem.name or stem.name == "..":
+        raise InvalidValueError(f"-o takes the path of the outputs without their suffix, not {output!r}")
+    return stem
 
 
 def _manifest(unit: driver.Unit, pipeline: nodes.Pipeline, built: driver.Built) -> dict[str, object]:
@@ -203,8 +237,12 @@ def _make_word(path: str) -> str:
 def _configuration() -> str:
     """What is installed, a line each; what is missing says so instead of failing."""
     lines = [f"optixc {__version__}"]
-    found = toolchain.installed_compilers()
-    lines += [f"compiler: {one}" for one in found] or ["compiler: none found; install g++ 12 or clang++ 16 or newer"]
+    try:
+        # The one that is used comes first.
+        found = dict.fromkeys([toolchain.find_compiler(), *toolchain.installed_compilers()])
+        lines += [f"compiler: {one}" for one in found]
+    except toolchain.ToolchainError as error:
+        lines.append(f"compiler: {error}")
     lines.append(f"processor lanes: {toolchain.processor_lanes()}")
     for name, ask in (("include folder", installation.include_folder), ("library", installation.library_path)):
         try:

@@ -16,7 +16,7 @@ def read_frames(folder: Path) -> dict[str, int]:
     """Bytes of every function that the compiler's files in `folder` name."""
     frames: dict[str, int] = {}
     for path in sorted(folder.glob("*.su")):
-        for line in path.read_text(errors="replace").splitlines():
+        for line in path.read_text(encoding="utf-8", errors="replace").splitlines():
             name, tab, rest = line.partition("\t")
             size = rest.split("\t", 1)[0]
             if tab and size.isdigit():

@@ -156,7 +156,7 @@ def compile_shared(text: str, output: Path, compiler: Compiler, build: Build, me
     """
     with tempfile.TemporaryDirectory(prefix="optixc-", dir=output.parent) as folder:
         source = output.with_suffix(".cpp") if build.debug else Path(folder) / "pipeline.cpp"
-        source.write_text(text)
+        source.write_text(text, encoding="utf-8", errors="surrogatepass")
         made = Path(folder) / "pipeline.so"
         arguments = [*build.flags(), *_QUIET, "-fstack-usage", "-shared", str(source), "-o", str(made), "-lm"]
         headers = _precompiled_headers(text, compiler, build, memory) if memory is not None else None
@@ -216,13 +216,13 @@ def compile_variants(variants: Sequence[tuple[str, Build]], output: Path, compil
         objects = []
         for number, (text, build) in enumerate(variants):
             source = Path(folder) / f"variant_{number}.cpp"
-            source.write_text(text)
+            source.write_text(text, encoding="utf-8", errors="surrogatepass")
             objects.append(str(source.with_suffix(".o")))
             names = [f"-D{_SYMBOL}=oxrt_variant_{number}", f"-DOXRT_ISA=isa_{re.sub('[^a-z0-9]', '_', build.target)}"]
             _run(compiler, [*build.flags(), *_QUIET, *names, "-fstack-usage", "-c", str(source), "-o", objects[-1]])
         joined, exports, made = (Path(folder) / name for name in ("pipeline.cpp", "exports.map", "pipeline.so"))
-        joined.write_text(_joined(len(variants)))
-        exports.write_text(f"{{ global: {_SYMBOL}; local: *; }};\n")
+        joined.write_text(_joined(len(variants)), encoding="ascii")
+        exports.write_text(f"{{ global: {_SYMBOL}; local: *; }};\n", encoding="ascii")
         link = ["-shared", f"-Wl,--version-script={exports}", str(joined), *objects, "-o", str(made), "-lm"]
         _run(compiler, [*variants[0][1].flags(), *_QUIET, *link])
         frames = read_frames(made.parent)
@@ -246,9 +246,9 @@ def compile_assembly(text: str, compiler: Compiler, build: Build) -> str:
     """The assembly of C++ text, Intel syntax."""
     with tempfile.TemporaryDirectory(prefix="optixc-") as folder:
         source, made = Path(folder) / "pipeline.cpp", Path(folder) / "pipeline.s"
-        source.write_text(text)
+        source.write_text(text, encoding="utf-8", errors="surrogatepass")
         _run(compiler, [*build.flags(), *_QUIET, "-S", "-masm=intel", str(source), "-o", str(made)])
-        return made.read_text()
+        return made.read_text(encoding="utf-8", errors="replace")
 
 
 @cache

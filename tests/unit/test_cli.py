@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import os
 import subprocess
 import sys
 from pathlib import Path
@@ -60,6 +61,16 @@ def test_writes_library_header_and_manifest(shader: Path, tmp_path: Path) -> Non
 def test_the_default_output_is_named_after_the_shader(shader: Path, tmp_path: Path) -> None:
     assert cli.main([str(shader), "-O1"]) == 0
     assert {"shader.so", "shader.h", "shader.json"} <= {path.name for path in tmp_path.iterdir()}
+
+
+@pytest.mark.parametrize(("output", "made"), [("out/", "out/shader"), ("out/made.so", "out/made"), ("out/ma de-1.x", "out/ma de-1.x")])
+def test_ways_to_name_the_outputs(shader: Path, tmp_path: Path, output: str, made: str) -> None:
+    assert cli.main(["shader.py", "-O1", "-o", output]) == 0
+    assert sorted(path.name for path in (tmp_path / "out").iterdir()) == [Path(made).name + end for end in (".h", ".json", ".so")]
+    header = (tmp_path / f"{made}.h").read_text()
+    names = [line.split()[1] for line in header.splitlines() if line.startswith(("#ifndef", "#define"))]
+    assert len(names) == 3
+    assert all(name.isidentifier() for name in names)
 
 
 @pytest.mark.parametrize(
@@ -125,6 +136,20 @@ def test_a_reader_that_has_seen_enough(shader: Path) -> None:
     assert (done.returncode, done.stderr) == (0, "")
 
 
+def test_an_output_that_cannot_be_written_is_no_traceback(shader: Path) -> None:
+    command = [sys.executable, "-m", "optixc.cli", "shader.py", "--emit", "cpp"]
+    with open("/dev/full", "w") as full:
+        ended = subprocess.run(command, stdout=full, stderr=subprocess.PIPE, text=True, check=False)
+    assert (ended.returncode, ended.stderr) == (cli.EXIT_USAGE, "optixc: standard output cannot be written: No space left on device\n")
+
+
+def test_text_that_the_terminal_cannot_show(shader: Path) -> None:
+    shader.write_text(shader.read_text().replace("fill():", "fill():\n    print('größer')"), encoding="utf-8")
+    command = [sys.executable, "-m", "optixc.cli", "shader.py", "--emit", "ir"]
+    printed = subprocess.run(command, env={**os.environ, "PYTHONIOENCODING": "ascii"}, capture_output=True, check=True).stdout
+    assert "größer" in printed.decode("utf-8")
+
+
 def test_ctrl_c_is_no_traceback(shader: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     def interrupted(*arguments: object) -> None:
         raise KeyboardInterrupt
@@ -133,7 +158,10 @@ def test_ctrl_c_is_no_traceback(shader: Path, monkeypatch: pytest.MonkeyPatch) -
     assert cli.main(["shader.py"]) == cli.EXIT_INTERRUPTED
 
 
-@pytest.mark.parametrize("arguments", [[], ["none.py"], ["shader.py", "--simd", "3"], ["shader.py", "--bind", "scale"]])
+@pytest.mark.parametrize(
+    "arguments",
+    [[], ["none.py"], ["shader.py", "--simd", "3"], ["shader.py", "--bind", "scale"], ["shader.py", "-o", ""], ["shader.py", "-o", ".."]],
+)
 def test_wrong_usage(shader: Path, capsys: pytest.CaptureFixture[str], arguments: list[str]) -> None:
     try:
         code = cli.main(arguments)
@@ -162,6 +190,12 @@ def test_configuration_tells_what_is_there(shader: Path, capsys: pytest.CaptureF
     printed = capsys.readouterr().out
     for word in ("compiler: ", "embree: 4.", "include folder: ", "cmake package: ", "cache: ", "processor lanes: "):
         assert word in printed
+
+
+def test_configuration_tells_of_a_wrong_choice(shader: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
+    monkeypatch.setenv("OPTIXC_CXX", "nonsense")
+    assert cli.main(["--print-config"]) == 0
+    assert "compiler: OPTIXC_CXX names 'nonsense'" in capsys.readouterr().out
 
 
 def test_the_version(capsys: pytest.CaptureFixture[str]) -> None:

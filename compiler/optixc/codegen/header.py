@@ -6,6 +6,7 @@ and matrices are arrays of their scalar; arrays are a pointer and a shape.
 
 from __future__ import annotations
 
+import re
 from typing import assert_never
 
 from optixc.codegen.cpp_pipeline import record_structs
@@ -31,7 +32,7 @@ from optixc.ir.types import (
 
 def emit_header(pipeline: Pipeline, name: str = "shaders") -> str:
     """The text of the header; `name` is the file's, for its guard and the prefix of its constants."""
-    prefix = identifier(name).upper()
+    prefix = identifier(re.sub(r"\W", "_", name)).upper()
     lines = [
         f"/* Structs and program names of the pipeline {name}, made by optixc. */",
         f"#ifndef {prefix}_H",

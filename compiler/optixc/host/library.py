@@ -28,7 +28,7 @@ def ffi() -> Any:
     """The declarations of oxrt.h and interpret.h."""
     made = cffi.FFI()
     for header in ("oxrt.h", "interpret.h"):
-        made.cdef(header_declarations((include_folder() / "oxrt" / header).read_text()))
+        made.cdef(header_declarations((include_folder() / "oxrt" / header).read_text(encoding="ascii")))
     return made
 
 
