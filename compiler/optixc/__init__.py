@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 from optixc import enums, errors
 from optixc.api import DeviceContext
-from optixc.api_programs import device, device_function, launch_params, program
+from optixc.api_programs import DEVICE_FUNCTIONS, device, device_function, launch_params, program
 from optixc.diagnostics import CompileError
 from optixc.enums import *  # noqa: F403
 from optixc.errors import *  # noqa: F403
@@ -221,3 +221,6 @@ else:
             raise AttributeError(f"module 'optixc' has no attribute {name!r}")
         globals()[name] = found
         return found
+
+    def __dir__() -> list[str]:
+        return sorted({*globals(), *DEVICE_FUNCTIONS})

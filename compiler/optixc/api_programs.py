@@ -21,6 +21,7 @@ R = TypeVar("R")
 T = TypeVar("T")
 
 SPECIAL_FUNCTIONS = ("trace", "traverse", "invoke", "direct_call", "continuation_call", "get_sbt_data", "hit_object_get_sbt_data")
+DEVICE_FUNCTIONS = (*INTRINSICS, *OVERLOADS, *SPECIAL_FUNCTIONS)
 
 
 class ProgramFunction(Generic[P, R]):

@@ -59,6 +59,24 @@ def test_T004_a_destroyed_context_takes_everything_with_it() -> None:
             use()
 
 
+def test_a_context_ends_with_its_block() -> None:
+    with ox.DeviceContext(threads=np.int64(1)) as context:
+        accel = context.accel_build([ox.BuildInputTriangles(np.zeros((3, 3), np.float32))])
+        assert context.info()["threads"] == 1
+    with pytest.raises(ox.InvalidDeviceContextError):
+        context.accel_build([ox.BuildInputTriangles(np.zeros((3, 3), np.float32))])
+    accel.destroy()
+    with pytest.raises(ox.InvalidDeviceContextError), context:
+        pass
+
+
+def test_errors_are_raised_and_not_printed_as_well(capfd: pytest.CaptureFixture[str]) -> None:
+    instance = ox.Instance(1 << 40)
+    with pytest.raises(ox.OptixError), ox.DeviceContext() as context:
+        context.accel_build([ox.BuildInputInstances([instance])])
+    assert capfd.readouterr().err == ""
+
+
 def test_T008_levels_of_the_log(tmp_path: Path) -> None:
     path = tmp_path / "faulty.py"
     path.write_text(FAULTY)

@@ -92,6 +92,18 @@ def test_T025_options_that_are_none() -> None:
             call()
 
 
+def test_a_module_is_a_mapping(tmp_path: Path) -> None:
+    path = tmp_path / "shader.py"
+    path.write_text("import optixc as ox\n@ox.program\ndef __miss__sky():\n    pass\n")
+    module = ox.DeviceContext().module_create(path)
+    assert list(module) == ["__miss__sky"]
+    assert "__miss__sky" in module
+    assert "__miss__none" not in module
+    assert module.get("__miss__none") is None
+    with pytest.raises(ox.InvalidValueError, match=r"^the module has no program '__miss__none'; it has __miss__sky$"):
+        module["__miss__none"]
+
+
 def test_T026_entries_that_are_absent_or_of_another_kind(tmp_path: Path) -> None:
     context = ox.DeviceContext()
     module = context.module_create(written(tmp_path, "".join(program(f"__{kind}__p") for kind in KINDS)))

@@ -227,3 +227,9 @@ def test_one_helper_per_signature() -> None:
 def test_same_input_same_text() -> None:
     text = PRELUDE + "@ox.program\ndef __raygen__a():\n    a = step(Rng(1))\n"
     assert print_module(compile_text(text, "shader.py").module) == print_module(compile_text(text, "shader.py").module)
+
+
+def test_components_of_colours_are_those_of_vectors() -> None:
+    colour = lowered("v = float4(1.0)\nv.a = 0.5\nparams.out[0] = v.bgr.x + v.r")
+    assert colour == lowered("v = float4(1.0)\nv.w = 0.5\nparams.out[0] = v.zyx.x + v.x")
+    assert any("v.w = " in line for line in colour)

@@ -180,3 +180,78 @@ def test_payload_words_refuse_unknown_access() -> None:
         ox.payload_word(raygen="r")
     with pytest.raises(TypeError, match='"rw"'):
         ox.payload_word(ch="x")
+
+
+def test_defaults_that_are_structs_are_not_shared() -> None:
+    @ox.struct
+    class Inner:
+        value: float = 1.0
+
+    @ox.struct
+    class Outer:
+        inner: Inner = Inner()
+
+    first, second = Outer(), Outer()
+    first.inner.value = 5.0
+    assert (first.inner.value, second.inner.value, Outer().inner.value) == (5.0, 1.0, 1.0)
+
+
+def test_a_bool_field_takes_zero_and_one() -> None:
+    @ox.struct
+    class Switch:
+        on: bool
+
+    assert [Switch(value).on for value in (0, 1, np.uint8(1), False)] == [False, True, True, False]
+    with pytest.raises(ox.InvalidValueError, match=r"Switch.on takes a bool, not int 2"):
+        Switch(2)
+
+
+def test_a_struct_as_a_numpy_array() -> None:
+    @ox.struct
+    class Ball:
+        centre: float3
+        count: ox.int32
+
+    ball = Ball((1.0, 2.0, 3.0), 4)
+    array = np.zeros(2, Ball.dtype)
+    array[1] = np.array(ball)
+    ball.count = 5
+    assert array[1]["count"] == 4
+    assert np.stack([ball, ball])["count"].tolist() == [5, 5]
+    with pytest.raises(TypeError, match=r"a Ball becomes an array of Ball.dtype only; in `array\[i\] = x` write numpy.array\(x\)"):
+        array[0] = ball
+
+
+def test_what_a_struct_class_refuses_to_be_made_of() -> None:
+    @ox.struct
+    class Inner:
+        value: float
+
+    with pytest.raises(TypeError, match="no class that inherits a struct; give it a field of type Inner"):
+
+        @ox.struct
+        class Derived(Inner):
+            other: float
+
+    with pytest.raises(TypeError, match=r"numpy's float32 is not a type of shaders; write optixc\.float32"):
+
+        @ox.struct
+        class Foreign:
+            value: np.float32
+
+
+def test_vectors_equal_tuples_of_their_components() -> None:
+    vector = float3(1.0, 2.0, 3.0)
+    assert vector == (1.0, 2.0, 3.0)
+    assert vector == (1, 2, 3)
+    assert vector != (1.0, 2.0)
+    assert hash(vector) == hash((1.0, 2.0, 3.0))
+    assert vector != ox.int3(1, 2, 3)
+    assert vector.bgr == float3(3.0, 2.0, 1.0)
+
+
+def test_a_matrix_takes_one_index() -> None:
+    matrix: Any = ox.float3x3(np.eye(3))
+    assert matrix[1][1] == 1.0
+    with pytest.raises(TypeError, match="float3x3 takes one index, a row"):
+        matrix[1, 1]

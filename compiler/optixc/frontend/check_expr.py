@@ -44,7 +44,7 @@ from optixc.frontend.symbols import (
 from optixc.frontend.weak import INVALID, WEAK_FLOAT, WEAK_INT, Invalid, is_integer, tuple_of, widened
 from optixc.ir import types as t
 
-_COMPONENTS = {"x": 0, "y": 1, "z": 2, "w": 3}
+_COMPONENTS = {"x": 0, "y": 1, "z": 2, "w": 3, "r": 0, "g": 1, "b": 2, "a": 3}
 _MAX_LITERAL_BITS = 64
 
 

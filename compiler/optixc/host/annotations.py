@@ -144,4 +144,6 @@ def _class_field_type(kind: type) -> FieldType:
     if made is not None:
         nested: FieldType = made
         return nested
+    if kind.__module__ == "numpy" and kind.__name__ in {scalar.__name__ for scalar in _SCALARS}:
+        raise TypeError(f"numpy's {kind.__name__} is not a type of shaders; write optixc.{kind.__name__}")
     raise TypeError(f"{kind.__name__} is not a type that a struct can hold; decorate a class with @optixc.struct to nest it")

@@ -7,12 +7,13 @@ import sys
 import traceback
 import warnings
 from collections.abc import Callable
-from typing import Any
+from typing import Any, Self
 
 from optixc.enums_program import DeviceProperty
 from optixc.errors import InvalidDeviceContextError, InvalidValueError
 from optixc.host import library
 from optixc.host.properties import property_value
+from optixc.host.whole_numbers import WORD_LIMIT, take_whole
 from optixc.installation import embree_path
 
 LogCallback = Callable[[int, str, str], None]
@@ -28,6 +29,7 @@ class Context:
 
     `log_callback(level, tag, message)` gets what the runtime and the compiler have to say, levels 1 (fatal) to 4 (print). An exception
     inside is printed to standard error and nothing else happens. Without a callback warnings become Python warnings.
+    As a context manager it destroys itself at the end of the block.
     """
 
     def __init__(
@@ -38,8 +40,7 @@ class Context:
         log_level: int = LOG_PRINT,
     ) -> None:
         self._handle: Any = None
-        if threads is not None and (not isinstance(threads, int) or isinstance(threads, bool) or threads < 1):
-            raise InvalidValueError(f"threads must be None or at least 1, not {threads!r}")
+        count = 0 if threads is None else take_whole(threads, 1, WORD_LIMIT - 1, "threads is None or")
         if log_callback is not None and not callable(log_callback):
             raise InvalidValueError(f"log_callback must be callable, not {log_callback!r}")
         if isinstance(log_level, bool) or log_level not in range(5):
@@ -47,7 +48,7 @@ class Context:
         self.validation = bool(validation)
         self._log: tuple[LogCallback | None, int] = (log_callback, log_level)
         self._generation = library.process_generation()
-        self._create(threads or 0)
+        self._create(count)
 
     def _create(self, threads: int) -> None:
         ffi, lib = library.ffi(), library.lib()
@@ -130,8 +131,8 @@ class Context:
         text = library.ffi().string(message).decode("utf-8", "replace")
         if self._log[0] is not None:
             self.log(level, library.ffi().string(tag).decode("utf-8", "replace"), text)
-        elif level <= LOG_WARNING:
-            # Warnings may be turned into exceptions, which must not cross C; the logging module never raises.
+        elif level == LOG_WARNING:
+            # Errors reach the caller as exceptions. Warnings may be turned into such, which must not cross C; logging never raises.
             logging.getLogger("optixc").warning(text)
 
     def destroy(self) -> None:
@@ -139,6 +140,13 @@ class Context:
         handle, self._handle = self._handle, None
         if handle is not None and self._generation == library.process_generation():
             library.check(library.lib().oxrtContextDestroy(handle))
+
+    def __enter__(self) -> Self:
+        _ = self.handle
+        return self
+
+    def __exit__(self, *error: object) -> None:
+        self.destroy()
 
     def __del__(self) -> None:
         if getattr(self, "_handle", None) is not None and not sys.is_finalizing():

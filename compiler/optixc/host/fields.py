@@ -65,7 +65,7 @@ class ScalarField:
     def store(self, buffer: Buffer, offset: int, value: Any, where: str) -> Any:
         try:
             if self.text == "bool":
-                if not isinstance(value, bool | np.bool_):
+                if not isinstance(value, bool | np.bool_) and value not in (0, 1):
                     raise TypeError
                 buffer[offset] = int(value)
                 return bool(value)

@@ -45,6 +45,12 @@ class Program:
     payload_name: str | None = None
 
 
+class _NoSuchProgramError(InvalidValueError, KeyError):
+    """A mapping raises KeyError, so that `name in module` and `module.get(name)` work."""
+
+    __str__ = InvalidValueError.__str__
+
+
 class Module(Mapping[str, Program]):
     """The programs of a shader file, Python module or list of functions, by name."""
 
@@ -68,7 +74,7 @@ class Module(Mapping[str, Program]):
             raise InvalidOperationError("this module was destroyed; create it again")
         found = self._programs.get(name)
         if found is None:
-            raise InvalidValueError(f"the module has no program {name!r}; it has {', '.join(self._programs) or 'none'}")
+            raise _NoSuchProgramError(f"the module has no program {name!r}; it has {', '.join(self._programs) or 'none'}")
         return found
 
     def __iter__(self) -> Iterator[str]:

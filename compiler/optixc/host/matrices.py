@@ -32,6 +32,8 @@ class Matrix:
         raise AttributeError(f"matrices are values: build a new {type(self).__name__} instead of setting .{name}")
 
     def __getitem__(self, row: int) -> Vector:
+        if isinstance(row, tuple | slice):
+            raise TypeError(f"{type(self).__name__} takes one index, a row: index row and column one after the other, m[row][column]")
         return vector_class("float", self.columns)(*self._array[row].tolist())
 
     def __iter__(self) -> Iterator[Vector]:

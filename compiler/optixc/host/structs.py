@@ -133,7 +133,8 @@ class _Structure:
         if unknown:
             raise TypeError(f"{name} has no field {', '.join(sorted(unknown))}; it has {', '.join(f.name for f in layout.fields)}")
         for field in layout.fields:
-            _set_field(self, field, given.get(field.name, field.default))
+            # A default is one object for all instances; a struct among them may change.
+            _set_field(self, field, given[field.name] if field.name in given else copy(field.default))
 
     def __setattr__(self, name: str, value: Any) -> None:
         field = next((field for field in self.__optixc_layout__.fields if field.name == name), None)
@@ -165,6 +166,13 @@ class _Structure:
 
     def __reduce__(self) -> Any:
         return type(self), tuple(self.__dict__[field.name] for field in self.__optixc_layout__.fields)
+
+    def __array__(self, dtype: Any = None, copy: bool | None = None) -> np.ndarray[Any, Any]:
+        if dtype is not None and np.dtype(dtype) != self.__optixc_layout__.dtype:
+            # numpy asks for this when a struct is assigned to an element of a structured array.
+            name = type(self).__name__
+            raise TypeError(f"a {name} becomes an array of {name}.dtype only; in `array[i] = x` write numpy.array(x)")
+        return np.frombuffer(self._buffer, self.__optixc_layout__.dtype).copy().reshape(())
 
     def __repr__(self) -> str:
         inside = ", ".join(f"{field.name}={_short(self.__dict__[field.name])}" for field in self.__optixc_layout__.fields)
@@ -251,6 +259,9 @@ def _decorate(cls: type[T] | None, kind: str, names: dict[str, Any]) -> type[T] 
 
 
 def _make(cls: type[T], kind: str, names: dict[str, Any]) -> type[T]:
+    outer = next((base for base in cls.__mro__[1:] if issubclass(base, _Structure)), None)
+    if outer is not None:
+        raise TypeError(f"{cls.__name__}: @optixc.{kind} takes no class that inherits a struct; give it a field of type {outer.__name__}")
     layout = _layout(cls, names)
     body = {name: value for name, value in vars(cls).items() if name not in ("__dict__", "__weakref__")}
     for field in layout.fields:

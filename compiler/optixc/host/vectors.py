@@ -1,7 +1,8 @@
 """Vector types as Python values: `float3(1.0, 2.0, 3.0)` with the arithmetic of shaders, in the element's own precision.
 
-Vectors are values: nothing changes one in place. Components are x y z w, swizzles (`v.zyx`) give vectors, arithmetic is element by
-element with scalars spread, `==` compares all components. Memory layout: the elements in order, aligned as one element.
+Vectors are values: nothing changes one in place. Components are x y z w or r g b a, swizzles (`v.zyx`) give vectors, arithmetic is
+element by element with scalars spread, `==` compares all components, those of a tuple as well. Memory layout: the elements in order,
+aligned as one element.
 """
 
 from __future__ import annotations
@@ -12,7 +13,6 @@ from typing import TYPE_CHECKING, Any, ClassVar, Self
 
 import numpy as np
 
-_AXES = "xyzw"
 _LETTERS = {"x": 0, "y": 1, "z": 2, "w": 3, "r": 0, "g": 1, "b": 2, "a": 3}
 
 
@@ -62,10 +62,12 @@ class Vector:
         return self._values[operator.index(index)]
 
     def __eq__(self, other: object) -> bool:
+        if isinstance(other, tuple):
+            return self._values == other
         return self._values == other._values if type(other) is type(self) and isinstance(other, Vector) else NotImplemented
 
     def __hash__(self) -> int:
-        return hash((type(self).__name__, self._values))
+        return hash(self._values)
 
     def __repr__(self) -> str:
         return f"{type(self).__name__}({', '.join(map(repr, self._values))})"
