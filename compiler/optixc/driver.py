@@ -38,11 +38,11 @@ from optixc.ir import layout, nodes
 from optixc.ir import types as t
 from optixc.ir.walk import expressions, statements
 from optixc.options import EVERY_X86, BoundValue, CompileOptions
+from optixc.passes.array_uses import ArrayUse, array_uses
 from optixc.passes.callables import signatures_called
 from optixc.passes.features import Features, features
 from optixc.passes.pipeline import LinkError, link
 from optixc.passes.specialize import parameter_path
-from optixc.passes.written_arrays import written_arrays
 from optixc.signed_json import Json, digest
 from optixc.stack_usage import frames_of_programs
 from optixc.version import __version__
@@ -264,6 +264,12 @@ def _describe_trace(trace: nodes.Trace) -> Json:
     }
 
 
+def _describe_use(use: ArrayUse) -> Json:
+    """An array that a launch needs, and where it is used and written."""
+    used, written = (f"{span.path}:{span.line}" if span is not None else None for span in (use.used, use.written))
+    return {"path": use.path, "used": used, "written": written}
+
+
 def _trace_text(use: Json) -> str:
     given = (("sbt_offset", "sbt_offset"), ("sbt_stride", "sbt_stride"), ("miss", "miss_sbt_index"))
     words = ", ".join(f"{name} {use[key] if use[key] is not None else 'varies'}" for key, name in given)
@@ -295,7 +301,7 @@ def _describe(emitted: Emitted, options: CompileOptions, compiler: toolchain.Com
         "compiler": str(compiler),
         "programs": [program.name for program in emitted.pipeline.programs],
         "features": {feature.name: feature.describe() for feature in emitted.features.items},
-        "written": [{"path": one.path, "place": f"{one.span.path}:{one.span.line}"} for one in written_arrays(emitted.pipeline)],
+        "arrays": [_describe_use(use) for use in array_uses(emitted.pipeline)],
         "functions": [_describe_place(function) for function in (*emitted.pipeline.programs, *emitted.pipeline.helpers)],
         "traces": [str(use) for use in map(_trace_text, uses)],
         "trace_uses": uses,

@@ -122,12 +122,19 @@ _SCALARS: dict[type, str] = {
 def field_type(annotation: Any) -> FieldType:
     """The field type that an annotation names; TypeError for anything that has no layout in memory."""
     if isinstance(annotation, ArrayAnnotation):
-        return ArrayField(field_type(annotation.element), annotation.rank)
+        return ArrayField(_element_type(annotation.element), annotation.rank)
     if isinstance(annotation, FixedArrayAnnotation):
-        return FixedArrayField(field_type(annotation.element), annotation.size)
+        return FixedArrayField(_element_type(annotation.element), annotation.size)
     if isinstance(annotation, type):
         return _class_field_type(annotation)
     raise TypeError(f"{annotation!r} is not a type that a struct can hold")
+
+
+def _element_type(annotation: Any) -> FieldType:
+    element = field_type(annotation)
+    if isinstance(element, ArrayField):
+        raise TypeError(f"arrays cannot hold {element.text}; hold structs with an array as their field")
+    return element
 
 
 def _class_field_type(kind: type) -> FieldType:

@@ -8,6 +8,7 @@ shape: the numpy memory itself is what shaders see, so the array object must sta
 from __future__ import annotations
 
 import struct
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any, Protocol
 
@@ -220,10 +221,12 @@ class FixedArrayField:
 
     def store(self, buffer: Buffer, offset: int, value: Any, where: str) -> Any:
         base, shape = self.dtype.base, self.dtype.shape
-        if base.names is not None and isinstance(value, tuple | list):
-            value = [np.frombuffer(item.packed(), base)[0] if hasattr(item, "packed") else item for item in value]
+        array: np.ndarray[Any, Any]
         try:
-            array = np.array(value, base)
+            if base.names is not None and isinstance(value, tuple | list):
+                array = copy_structs(self.element, value, where)
+            else:
+                array = np.array(value, base, subok=isinstance(value, StructArray))
         except (TypeError, ValueError, OverflowError) as error:
             raise refuse(where, f"{self.size} elements of {self.element.text}", value) from error
         if array.shape != shape:
@@ -235,9 +238,24 @@ class FixedArrayField:
 
 
 class StructArray(np.ndarray[Any, Any]):
-    """Structs copied into one array; `sources` holds the originals, and with them the arrays that their copies point to."""
+    """Structs copied into one array; `sources` holds them as they were then, and with them the arrays that their copies point to."""
 
     sources: tuple[Any, ...] = ()
+
+    def __array_finalize__(self, origin: Any) -> None:
+        """Views and copies point to the same arrays."""
+        self.sources = getattr(origin, "sources", ())
+
+
+def copy_structs(element: FieldType, values: Sequence[Any], where: str) -> StructArray:
+    """The bytes of structs, one behind the other."""
+    array = np.zeros(len(values), element.dtype).view(StructArray)
+    memory, size = array.view(np.ndarray).reshape(-1).view(np.uint8).data, element.dtype.itemsize
+    stored = [element.store(memory, number * size, item, f"{where}[{number}]") for number, item in enumerate(values)]
+    # Fixed arrays of structs are copies already.
+    snapshot = getattr(element, "snapshot", None)
+    array.sources = tuple(stored if snapshot is None else map(snapshot, stored))
+    return array
 
 
 @dataclass(frozen=True)
@@ -279,12 +297,7 @@ class ArrayField:
             raise InvalidValueError(
                 f"{where} takes a numpy array ({self._wanted()}), whose memory shaders then use, not {type(value).__name__}"
             )
-        array = np.zeros(len(value), base).view(StructArray)
-        memory = array.view(np.uint8).data
-        array.sources = tuple(
-            self.element.store(memory, number * base.itemsize, item, f"{where}[{number}]") for number, item in enumerate(value)
-        )
-        return array
+        return copy_structs(self.element, value, where)
 
     def _check(self, array: np.ndarray[Any, Any], where: str) -> None:
         base, inner = self.element.dtype.base, self.element.dtype.shape

@@ -9,7 +9,7 @@ from typing import Any
 
 from optixc.enums_program import ModuleCompileState, ProgramGroupKind
 from optixc.errors import InvalidOperationError, InvalidValueError, PayloadTypeResolutionFailedError
-from optixc.host import structs
+from optixc.host import in_flight, structs
 from optixc.host.stack_sizes import StackSizes, sizes_of
 
 _SLOT_PREFIXES = {
@@ -178,6 +178,7 @@ class Record:
     @data.setter
     def data(self, data: Any) -> None:
         self.group.check_data(data)
+        in_flight.keep(self._data)
         self._data = data
         if data is not None:
             structs.observe(data, self)

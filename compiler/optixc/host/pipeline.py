@@ -10,13 +10,13 @@ from dataclasses import dataclass, field, replace
 from typing import Any
 
 from optixc.errors import InvalidDeviceContextError, InvalidOperationError, InvalidValueError, ValidationFailureError, from_code
-from optixc.host import bound_values, library, structs
+from optixc.host import bound_values, in_flight, library, structs
+from optixc.host.array_uses import ArrayUses
 from optixc.host.context import Context
 from optixc.host.graph_report import graph_forms
 from optixc.host.groups import ProgramGroup, Record, check_layout
 from optixc.host.sbt import ShaderBindingTable
 from optixc.host.stack_sizes import StackSizes, nesting_that_fits
-from optixc.host.written_arrays import WrittenArrays
 
 STEP_MS = 50
 FAULT_BOUND_VALUE = 3
@@ -48,7 +48,7 @@ class PipelineReport:
     trace_uses: tuple[dict[str, Any], ...] = ()
     calls_callables: bool = False
     functions: tuple[dict[str, Any], ...] = ()
-    written: tuple[dict[str, Any], ...] = ()
+    arrays: tuple[dict[str, Any], ...] = ()
 
     def __str__(self) -> str:
         source = "from the cache" if self.cache_hit else f"compiled in {self.compile_seconds:.2f} s"
@@ -115,17 +115,21 @@ class Pipeline:
         self._report = PipelineReport(
             lanes=int(info.lanes), params_size=int(info.paramsSize), max_trace_depth=int(info.maxTraceDepth), library=path, **report
         )
-        self._written = WrittenArrays(self._report.written)
+        self._arrays = ArrayUses(self._report.arrays)
         for group in self._groups:
             group.linked_into(self)
 
     def launch(self, params: Any, sbt: ShaderBindingTable, width: int, height: int = 1, depth: int = 1) -> None:
         """Runs width x height x depth launch indices and returns when all are done; Ctrl-C stops it within a second."""
         self._check_launch(params, sbt)
-        with self._lock:
-            data, size, table = self._pack(params, sbt)
-            self._last_params = weakref.ref(params) if self._params is not None else None
-            self._run(data, size, table, width, height, depth)
+        kept = in_flight.begin()
+        try:
+            with self._lock:
+                data, size, table = self._pack(params, sbt)
+                self._last_params = weakref.ref(params) if self._params is not None else None
+                self._run(data, size, table, width, height, depth)
+        finally:
+            in_flight.end(kept)
 
     def launch_inputs(self, params: Any, sbt: ShaderBindingTable) -> tuple[Any, Any, int, Any]:
         """What a launch would give the runtime: the pipeline, the bytes of the parameters, their number, the table."""
@@ -140,7 +144,7 @@ class Pipeline:
         if type(params) is not self._params_type:
             self._check_params(params)
         if self._params is not None:
-            self._written.check_params(params)
+            self._arrays.check_params(params)
         if type(sbt) is not ShaderBindingTable:
             raise InvalidValueError(f"sbt takes a ShaderBindingTable, not {type(sbt).__name__}")
 
@@ -208,12 +212,12 @@ class Pipeline:
         library.check(self._lib.oxrtPipelineSetStackTraceDepth(self._pipeline, nesting_that_fits(total, continuation_stack_size)))
 
     def check_record(self, record: Record) -> None:
-        """Raises unless the record's data is what its programs in this pipeline read, and may be written where they write."""
+        """Raises unless the record's data is what its programs in this pipeline read, with the arrays that they use."""
         for program in record.group.programs.values():
             linked = self.programs.get(program.name)
             if linked is not None:
                 check_layout(program.name, linked["record"], linked["record_name"], record.data)
-        self._written.check_record([program.name for program in record.group.programs.values()], record.data)
+        self._arrays.check_record([program.name for program in record.group.programs.values()], record.data)
 
     def pack_header(self, group: ProgramGroup, data_size: int) -> bytes:
         """The 32 bytes before the data of a record that runs `group` in this pipeline."""

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import threading
 from collections.abc import Mapping, Sequence
 from typing import Any
 
@@ -38,8 +37,6 @@ class ShaderBindingTable:
         self.callables = _take_all(callables, ProgramGroupKind.CALLABLES, "callables")
         self._ray_types: tuple[str, ...] = ()
         self._material_count: int | None = None
-        self._lock = threading.Lock()
-        self._changed: set[Record] = set()
         self._packed: dict[int, _PackedTable] = {}
         for record in dict.fromkeys(self._records()):
             record.watch(self)
@@ -112,29 +109,26 @@ class ShaderBindingTable:
         return -(-(HEADER_SIZE + largest) // ALIGNMENT) * ALIGNMENT
 
     def record_changed(self, record: Record) -> None:
-        """A record's data changed; it is packed again before the next launch."""
-        with self._lock:
-            self._changed.add(record)
+        """A record's data changed; it is packed again before the next launch of each pipeline."""
+        for packed in tuple(self._packed.values()):
+            packed.changed.append(record)
 
     def c_table(self, pipeline: Any) -> Any:
-        """The runtime's view of this table for a pipeline, up to date."""
-        if self._changed:
-            self._refresh()
+        """The runtime's view of this table for a pipeline, up to date; the pipeline must not be launched by another thread meanwhile."""
         packed = self._packed.get(pipeline.uid)
-        if packed is None:
-            packed = self._packed[pipeline.uid] = _PackedTable(self, pipeline)
+        if packed is None or (packed.changed and not packed.refresh()):
+            # The table is told of changes from before the records are read.
+            packed = self._packed[pipeline.uid] = _PackedTable(pipeline)
+            try:
+                packed.lay_out(self)
+            except BaseException:
+                self.forget(pipeline.uid)
+                raise
         return packed.c_table
 
     def forget(self, uid: int) -> None:
         """Drops what was packed for a pipeline that is gone."""
         self._packed.pop(uid, None)
-
-    def _refresh(self) -> None:
-        with self._lock:
-            changed, self._changed = self._changed, set()
-        for uid, packed in list(self._packed.items()):
-            if not all(packed.rewrite(record) for record in changed):
-                del self._packed[uid]
 
     def _records(self) -> list[Record]:
         sections = (self.raygen, self.exception, *self.miss, *self.hitgroup, *self.callables)
@@ -144,13 +138,17 @@ class ShaderBindingTable:
 class _PackedTable:
     """The bytes of a table for one pipeline."""
 
-    def __init__(self, sbt: ShaderBindingTable, pipeline: Any) -> None:
+    def __init__(self, pipeline: Any) -> None:
         self._pipeline = pipeline
         self._headers: dict[tuple[int, int], bytes] = {}
         self._places: dict[Record, list[tuple[memoryview, int]]] = {}
         self._memory: list[Any] = []
-        ffi = library.ffi()
-        table = self.c_table = ffi.new("OxrtShaderBindingTable*")
+        self.changed: list[Record] = []
+        self.c_table = library.ffi().new("OxrtShaderBindingTable*")
+
+    def lay_out(self, sbt: ShaderBindingTable) -> None:
+        """Writes all records; raises for one that this pipeline cannot run."""
+        table = self.c_table
         table.raygenRecord, _ = self._section([sbt.raygen])
         if sbt.exception is not None:
             table.exceptionRecord, _ = self._section([sbt.exception])
@@ -161,8 +159,16 @@ class _PackedTable:
         table.callableRecords, table.callableStride = self._section(sbt.callables)
         table.callableCount = len(sbt.callables)
 
-    def rewrite(self, record: Record) -> bool:
-        """Writes a record's new data; False if it grew or shrank, so that the table must be laid out anew."""
+    def refresh(self) -> bool:
+        """Writes the data of the records that changed; False if one grew or shrank, so that the table must be laid out anew."""
+        while self.changed:
+            record = self.changed[-1]
+            if not self._rewrite(record):
+                return False
+            self.changed.remove(record)
+        return True
+
+    def _rewrite(self, record: Record) -> bool:
         self._pipeline.check_record(record)
         data = record.packed()
         for section, offset in self._places.get(record, ()):

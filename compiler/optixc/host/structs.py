@@ -15,6 +15,7 @@ from typing import Any, Protocol, TypeVar, dataclass_transform, overload
 
 import numpy as np
 
+from optixc.host import in_flight
 from optixc.host.annotations import field_type
 from optixc.host.fields import Buffer, FieldType, refuse
 
@@ -96,6 +97,10 @@ class StructField:
     def default(self) -> Any:
         return self.kind(**{field.name: field.type.default() for field in self.layout.fields})
 
+    def snapshot(self, value: Any) -> Any:
+        """A copy that later changes of `value` do not reach, whatever it holds; it keeps the arrays that a copy of the bytes points to."""
+        return self.kind(**{field.name: _snapshot(field.type, value.__dict__[field.name]) for field in self.layout.fields})
+
     def store(self, buffer: Buffer, offset: int, value: Any, where: str) -> Any:
         if isinstance(value, tuple | list):
             value = self.kind(*value)
@@ -113,6 +118,10 @@ class _Structure:
     __optixc_kind__: str
     _buffer: bytearray
     _observers: list[weakref.ref[Any]]
+    _complete_for: object
+    """Who found that nothing is missing (see `array_uses`); forgotten at every change."""
+    _pins: dict[str, weakref.ref[Any]]
+    """numpy moves no memory of arrays that somebody refers to weakly, so that addresses in `_buffer` stay true."""
 
     def __init__(self, *args: Any, **kwargs: Any) -> None:
         layout = self.__optixc_layout__
@@ -121,6 +130,8 @@ class _Structure:
             raise TypeError(f"{name} has {len(layout.fields)} fields, {len(args)} values were given")
         object.__setattr__(self, "_buffer", bytearray(layout.dtype.itemsize))
         object.__setattr__(self, "_observers", [])
+        object.__setattr__(self, "_complete_for", None)
+        object.__setattr__(self, "_pins", {})
         given = dict(zip((field.name for field in layout.fields), args, strict=False))
         for key in kwargs:
             if key in given:
@@ -150,6 +161,7 @@ class _Structure:
 
     def struct_changed(self, instance: _Structure) -> None:
         """A struct held by a field changed: take its bytes over."""
+        object.__setattr__(self, "_complete_for", None)
         for field in self.__optixc_layout__.fields:
             if self.__dict__.get(field.name) is instance:
                 self._buffer[field.offset : field.offset + field.type.dtype.itemsize] = instance.packed()
@@ -199,7 +211,16 @@ def _set_field(instance: _Structure, field: Field, value: Any) -> None:
     kept = field.type.store(instance._buffer, field.offset, value, f"{type(instance).__name__}.{field.name}")
     if isinstance(kept, _Structure):
         observe(kept, instance)
-    instance.__dict__[field.name] = kept
+    elif isinstance(kept, np.ndarray):
+        instance._pins[field.name] = weakref.ref(kept)
+    values = instance.__dict__
+    in_flight.keep(values.get(field.name))
+    values[field.name] = kept
+    values["_complete_for"] = None
+
+
+def _snapshot(kind: FieldType, value: Any) -> Any:
+    return kind.snapshot(value) if isinstance(kind, StructField) else value
 
 
 def _tell(instance: _Structure) -> None:

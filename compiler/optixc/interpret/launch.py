@@ -13,7 +13,7 @@ from typing import Any
 
 from optixc.errors import InvalidValueError
 from optixc.frontend.checked import FunctionInstance
-from optixc.host import library
+from optixc.host import in_flight, library
 from optixc.host.pipeline import Pipeline
 from optixc.host.sbt import ShaderBindingTable
 from optixc.interpret.machine import Machine
@@ -39,7 +39,11 @@ def interpret(
         machine = _machines.get(pipeline)
         if machine is None:
             machine = _machines[pipeline] = _machine(pipeline)
-        _run(machine, *pipeline.launch_inputs(params, sbt), extent, place)
+        kept = in_flight.begin()
+        try:
+            _run(machine, *pipeline.launch_inputs(params, sbt), extent, place)
+        finally:
+            in_flight.end(kept)
 
 
 def _run(

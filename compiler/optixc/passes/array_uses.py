@@ -1,7 +1,9 @@
-"""Which arrays of launch parameters and SBT records a pipeline may write: a read-only numpy array there is refused before a launch.
+"""Which arrays of launch parameters and SBT records a pipeline may read or write: a launch refuses None there, and read-only numpy
+arrays where they are written.
 
 Arrays are views that may be bound to locals, passed to helpers and callables inside of structs, and returned. What a local may be bound
-to is followed without looking at the order of statements, so an array counts as written if some path through the program writes it.
+to is followed without looking at the order of statements, so an array counts as used if some path through the program uses it. Reading
+its shape is no use: that of no array is zero.
 """
 
 from __future__ import annotations
@@ -49,42 +51,64 @@ Path = tuple[str, ...]
 
 
 @dataclass(frozen=True)
-class WrittenArray:
-    """An array that some statement may write; `path` begins with `params`, `record PROGRAM` or `struct NAME`."""
+class ArrayUse:
+    """An array whose elements some program may read or write; `path` begins with `params`, `record PROGRAM` or `struct NAME`.
+
+    `used` and `written` are the first places that do so, `written` None for an array that is only read.
+    """
 
     path: Path
-    span: Span
+    used: Span
+    written: Span | None
 
 
-def written_arrays(pipeline: Pipeline) -> tuple[WrittenArray, ...]:
-    """The arrays, each once with the first place that writes it."""
+def array_uses(pipeline: Pipeline) -> tuple[ArrayUse, ...]:
+    """The arrays that are used, each once."""
     search = _Search(pipeline)
     search.collect()
-    found: dict[Path, Span] = {}
-    for path, span in search.writes:
-        for root in sorted(search.roots(path, frozenset())):
-            found.setdefault(root, span)
-    return tuple(WrittenArray(path, span) for path, span in found.items())
+    used, written = search.at_roots(search.uses), search.at_roots(search.writes)
+    return tuple(ArrayUse(path, span, written.get(path)) for path, span in used.items())
 
 
 @dataclass
 class _Search:
     pipeline: Pipeline
     bindings: dict[Path, set[Path]] = field(default_factory=dict)
-    writes: list[tuple[Path, Span]] = field(default_factory=list)
+    uses: dict[Path, Span] = field(default_factory=dict)
+    writes: dict[Path, Span] = field(default_factory=dict)
 
     def collect(self) -> None:
-        """Notes what is bound to what, and what is written."""
+        """Notes what is bound to what, what is used and what is written."""
         functions = {function.name: function for function in (*self.pipeline.programs, *self.pipeline.helpers)}
         for function in functions.values():
             for parameter in function.parameters:
                 if parameter.role is ParameterRole.RECORD:
                     self._bind(_local(function, parameter.local.name), [(f"record {function.name}",)])
             for expression in expressions(function.body):
-                if isinstance(expression, HelperCall):
-                    self._pass(function, functions[expression.function], expression.arguments)
+                self._expression(function, expression, functions)
             for statement in statements(function.body):
                 self._statement(function, statement, functions)
+
+    def _expression(self, function: Function, expression: Expr, functions: dict[str, Function]) -> None:
+        match expression:
+            case HelperCall(function=name, arguments=arguments):
+                self._pass(function, functions[name], arguments)
+            case ElementRef(array=array, span=span):
+                self._note(self.uses, function, array, span)
+            case IntrinsicCall(arguments=arguments, span=span):
+                self._use_whole(function, arguments, span)
+            case _:
+                pass
+
+    def _use_whole(self, function: Function, arguments: tuple[Expr, ...], span: Span) -> None:
+        """Device functions that take an array look at its elements."""
+        for argument in arguments:
+            if isinstance(argument.type, Array):
+                self._note(self.uses, function, argument, span)
+
+    def _note(self, target: dict[Path, Span], function: Function, array: Expr, span: Span) -> None:
+        for path in self._paths(function, array):
+            target.setdefault(path, span)
 
     def _statement(self, function: Function, statement: Stmt, functions: dict[str, Function]) -> None:
         match statement:
@@ -108,8 +132,10 @@ class _Search:
                     self._pass(function, program, statement.arguments)
                     if statement.target is not None and _holds_arrays(statement.target.type):
                         self._bind(_local(function, statement.target.name), [(f"result {program.name}",)])
-            case CallIntrinsic(name=name, arguments=arguments, span=span) if name in ATOMIC_NAMES:
-                self._write(function, arguments[0], span)
+            case CallIntrinsic(name=name, arguments=arguments, span=span):
+                self._use_whole(function, arguments, span)
+                if name in ATOMIC_NAMES:
+                    self._write(function, arguments[0], span)
             case Trace(payload=payload, span=span) if payload is not None:
                 self._write(function, payload, span)
             case _:
@@ -142,7 +168,7 @@ class _Search:
             if not isinstance(place, FieldRef | ComponentRef | IndexRef | TupleItem):
                 return
             place = place.base
-        self.writes += [(path, span) for path in self._paths(function, place.array)]
+        self._note(self.writes, function, place.array, span)
 
     def _paths(self, function: Function, expression: Expr) -> Iterator[Path]:
         """What an expression that holds or is an array may be."""
@@ -170,6 +196,14 @@ class _Search:
                 yield from self._paths(function, operand)
             case _:
                 return
+
+    def at_roots(self, noted: dict[Path, Span]) -> dict[Path, Span]:
+        """What was noted of views, at the arrays of parameters and records that they may be."""
+        found: dict[Path, Span] = {}
+        for path, span in noted.items():
+            for root in sorted(self.roots(path, frozenset())):
+                found.setdefault(root, span)
+        return found
 
     def roots(self, path: Path, seen: frozenset[Path]) -> set[Path]:
         """The arrays in parameters and records that a path may lead to."""

@@ -1,4 +1,4 @@
-"""Which arrays a pipeline writes: stores, atomics, and views that go through locals, helpers, callables, structs and records."""
+"""Which arrays a pipeline reads and writes, in place or by views that go through locals, helpers, callables, structs and records."""
 
 from __future__ import annotations
 
@@ -9,8 +9,8 @@ import pytest
 from optixc import passes
 from optixc.frontend.compile import compile_file
 from optixc.ir.nodes import PipelineOptions
+from optixc.passes.array_uses import ArrayUse, array_uses
 from optixc.passes.pipeline import link
-from optixc.passes.written_arrays import written_arrays
 
 HEAD = """import optixc as ox
 from optixc import Array, Array2, float3, uint32
@@ -107,15 +107,47 @@ BODIES: dict[str, tuple[str, set[str]]] = {
 }
 
 
-def written(tmp_path: Path, body: str, bound: bool = True) -> set[str]:
+ALWAYS = {"params.a", "params.cells", "record __closesthit__c.read"}
+READ: dict[str, tuple[str, set[str]]] = {
+    "a read": ("ray.x = params.b[1]", {"params.b"}),
+    "the shape": ("ray.x = float(params.b.shape[0] + params.image.shape[1])", set()),
+    "an index": ("ray.x = params.a[int(params.b[0])]", {"params.b"}),
+    "a written element": ("params.b[0] = 1.0", {"params.b"}),
+    "a condition": ("while params.b[0] > 1.0 or params.inner.source[2] < 1.0:\n        ray.x += 1.0", {"params.b", "params.inner.source"}),
+    "an atomic": ("ox.atomic_add(params.counts, 0, uint32(1))", {"params.counts"}),
+    "one of two": ("view = params.inner.out if params.choose else params.b\n    ray.x = view[0]", {"params.inner.out", "params.b"}),
+    "a result": ("ray.x = choose(params.choose)[0]", {"params.b"}),
+    "a struct to a helper": ("put_inner(params.inner, 1.0)", {"params.inner.out", "params.inner.source"}),
+    "a callable": ("x = ox.direct_call(0, params.inner, result=float)", {"params.inner.out"}),
+    "the record": ("ray.x = data.read[0]", {"record __raygen__r.read"}),
+    "dead code": ("if False:\n        ray.x = params.b[0]", set()),
+}
+
+
+def uses(tmp_path: Path, body: str) -> tuple[ArrayUse, ...]:
     path = tmp_path / "shader.py"
     path.write_text(HEAD.replace("{body}", f"    {body}"))
     module = compile_file(str(path)).module
     names = [program.name for program in module.programs if "direct_call" in body or "direct_callable" not in program.name]
-    return {".".join(one.path) for one in written_arrays(passes.run(link([module], names, PipelineOptions())))}
+    return array_uses(passes.run(link([module], names, PipelineOptions())))
 
 
 @pytest.mark.parametrize("name", BODIES)
 def test_arrays_that_a_pipeline_writes(tmp_path: Path, name: str) -> None:
     body, expected = BODIES[name]
-    assert written(tmp_path, body) == expected
+    assert {".".join(one.path) for one in uses(tmp_path, body) if one.written is not None} == expected
+
+
+@pytest.mark.parametrize("name", READ)
+def test_arrays_that_a_pipeline_uses(tmp_path: Path, name: str) -> None:
+    body, expected = READ[name]
+    found = uses(tmp_path, f"{body}\n    print(ray.x)")
+    assert {".".join(one.path) for one in found} == expected | ALWAYS
+    assert len(found) == len({one.path for one in found})
+
+
+def test_the_first_use_is_told(tmp_path: Path) -> None:
+    found = {".".join(one.path): one for one in uses(tmp_path, "ray.x = params.b[0]\n    params.b[1] = 2.0\n    print(ray.x)")}
+    first = found["params.a"].used.line
+    assert (found["params.b"].used.line, found["params.b"].written.line) == (first + 1, first + 2)
+    assert found["params.a"].written is None
