@@ -95,16 +95,17 @@ def scene_boxes(scene: list[dict[str, Any]], given: dict[str, Any]) -> list[Box]
     return found
 
 
-def passes_edge(scene: list[dict[str, Any]], given: dict[str, Any], tolerance: float = EDGE) -> bool:
-    """Whether the ray goes through an edge or vertex of some triangle, within a barycentric tolerance."""
+def edges_passed(scene: list[dict[str, Any]], given: dict[str, Any], tolerance: float = EDGE) -> dict[int, float]:
+    """The triangles of whose edges or vertices the ray passes one within a barycentric tolerance, and where it does."""
+    found: dict[int, float] = {}
     for item, _, ray, _ in _leaves(scene, given):
         if item["type"] == "triangles":
             with np.errstate(all="ignore"):
-                u, v, _, _ = _barycentrics(_corners(item), ray)
+                u, v, t, _ = _barycentrics(_corners(item), ray)
                 least = np.minimum(np.minimum(u, v), 1.0 - u - v)
-            if bool(np.any(np.abs(least) < tolerance)):
-                return True
-    return False
+            on_edge = (np.abs(least) < tolerance) & (t > ray.tmin) & (t < ray.tmax)
+            found.update({_primitive(item, i): float(t[i]) for i in np.flatnonzero(on_edge)})
+    return found
 
 
 def visible(hit: Hit, ray_flags: int) -> bool:

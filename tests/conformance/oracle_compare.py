@@ -118,7 +118,7 @@ class _Run:
             self._anyhit(event)
         elif kind == "CH":
             self._check(event["tmax"] <= self.closest, f"closest hit at {event['tmax']} behind an accepted one at {self.closest}")
-            self.words[3] = 7000 + event["prim"]
+            self.words[3] = (7000 + event["prim"]) & 0xFFFFFFFF
         elif kind == "MS":
             self._check(not self.accepted, "miss after an accepted hit")
             self.words[3] = 9000 + event["rec"]

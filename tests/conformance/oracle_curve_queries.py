@@ -6,6 +6,7 @@ The scenes were not recorded: a strand is made from the control points in the an
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -16,28 +17,36 @@ from shaders import curve_access as shader
 import optixc as ox
 
 POINT_FLOATS, CUBIC_POINTS = 4, 4
-# by the notes of the group: no normals, all along z, turning about x by 0.3 per vertex
-TURN = {"normals1": 0.0, "normals2": 0.3}
+RIBBON_KEYS = {"prim", "u", "v", "verts", "normal"}
+Turn = Callable[[int], np.ndarray | None]
 # A recorded normal holds a finite difference: its part that grows with v is off by 1e-4 of itself.
 NORMAL_TOLERANCE = 2e-4
 
 
 def is_curve_query(probe: Probe) -> bool:
-    """Whether the probe asks for control points of cubic curves or of ribbons whose orientation is known."""
+    """Whether the probe asks for control points of cubic curves, or of ribbons with their normals."""
     query = probe.data["queries"][0]
-    if isinstance(query, dict):
-        return "normal" in query and any(probe.name.endswith(name) for name in TURN)
-    return len(query) == CUBIC_POINTS * POINT_FLOATS
+    return set(query) == RIBBON_KEYS if isinstance(query, dict) else len(query) == CUBIC_POINTS * POINT_FLOATS
 
 
 def check_curve_queries(harness: Harness, probe: Probe) -> None:
-    """Control points exactly, normals within their rounding."""
+    """Control points exactly, normals within their rounding. Which normals the ribbon was built with was not recorded: one of the ways of
+    the group's notes must explain every answer."""
     asked = [query if isinstance(query, dict) else {"prim": int(query[0]), "u": 0, "v": 0, "verts": query}
              for query in probe.data["queries"]]
-    ribbon = "normal" in asked[0]
-    gas = _strand(harness, probe, asked, ribbon)
+    if "normal" not in asked[0]:
+        _answers(harness, asked, None)
+        return
+    worst = {name: _answers(harness, asked, turn) for name, turn in TURNS.items()}
+    assert min(worst.values()) < NORMAL_TOLERANCE, f"largest error of a normal: {worst}"
+
+
+def _answers(harness: Harness, asked: list[dict[str, Any]], turn: Turn | None) -> float:
+    """The largest error of a normal; the control points must be right."""
+    ribbon = turn is not None
+    gas = _strand(harness, asked, turn)
     module = harness.module("curve_access.py")
-    raygen = harness.context.program_group_create(raygen=module["__raygen__points"])
+    raygen = harness.kept.setdefault("curve access", harness.context.program_group_create(raygen=module["__raygen__points"]))
     pipeline = harness.pipeline("curve access", [raygen])
     queries = np.zeros(len(asked), shader.Query.dtype)
     for row, query in zip(queries, asked, strict=True):
@@ -47,21 +56,29 @@ def check_curve_queries(harness: Harness, probe: Probe) -> None:
     harness.launch(pipeline, shader.Params(queries=queries, points=points, normals=normals), sbt, len(asked))
     for row, query in enumerate(asked):
         assert points[row, : len(query["verts"])].tolist() == np.float32(numbers(query["verts"])).tolist()
-        if ribbon:
-            assert np.allclose(normals[row], numbers(query["normal"]), rtol=0, atol=NORMAL_TOLERANCE), (query, normals[row])
+    return max((float(np.abs(normals[row] - numbers(query["normal"])).max()) for row, query in enumerate(asked) if ribbon), default=0.0)
 
 
-def _strand(harness: Harness, probe: Probe, asked: list[dict[str, Any]], ribbon: bool) -> ox.Accel:
+def _along_z(count: int) -> np.ndarray:
+    return np.tile(np.float32([0.0, 0.0, 1.0]), (count, 1))
+
+
+def _turning(count: int) -> np.ndarray:
+    return np.array([(0.0, -math.sin(0.3 * number), math.cos(0.3 * number)) for number in range(count)], np.float32)
+
+
+# by the notes of the group: no normals, all along z, turning about x by 0.3 per vertex
+TURNS: dict[str, Turn] = {"none": lambda count: None, "along z": _along_z, "turning": _turning}
+
+
+def _strand(harness: Harness, asked: list[dict[str, Any]], turn: Turn | None) -> ox.Accel:
     """One strand through all control points of the answers, which begin at the one with the primitive's number."""
     known = {query["prim"] + i: point for query in asked
              for i, point in enumerate(np.reshape(np.float32(numbers(query["verts"])), (-1, POINT_FLOATS)))}
     table = np.array([known[number] for number in range(max(known) + 1)], np.float32)
-    segments = len(table) - (2 if ribbon else 3)
-    kind = ox.PrimitiveType.FLAT_QUADRATIC_BSPLINE if ribbon else ox.PrimitiveType.ROUND_CUBIC_BSPLINE
-    normals = None
-    if ribbon:
-        angles = [next(turn for name, turn in TURN.items() if probe.name.endswith(name)) * number for number in range(len(table))]
-        normals = np.array([(0.0, -math.sin(angle), math.cos(angle)) for angle in angles], np.float32)
+    segments = len(table) - (2 if turn else 3)
+    kind = ox.PrimitiveType.FLAT_QUADRATIC_BSPLINE if turn else ox.PrimitiveType.ROUND_CUBIC_BSPLINE
+    normals = turn(len(table)) if turn else None
     points, radii = np.ascontiguousarray(table[:, :3]), np.ascontiguousarray(table[:, 3])
     curves = ox.BuildInputCurves(kind, points, radii, np.arange(segments, dtype=np.uint32), normals=normals)
     return harness.context.accel_build([curves], build_flags=ox.BuildFlags.ALLOW_RANDOM_VERTEX_ACCESS)

@@ -5,9 +5,7 @@ A ray that is recorded differently must fall under one of these, and its own log
 
 from __future__ import annotations
 
-import json
 import math
-import re
 from collections import Counter
 from itertools import pairwise
 from typing import Any
@@ -19,13 +17,14 @@ from oracle_compare import CURVE_T, close, decide, mismatches, ray_scale, same_s
 from oracle_curve_differences import SECOND_CROSSING, crosses_again, curve_difference
 from oracle_events import RayResult
 from oracle_files import Probe, number, numbers
+from oracle_not_copied import ray_not_copied
 
 ORDER = "any-hit order"
 REPETITION = "any-hit repetition"
 BEYOND = "calls beyond the closest hit"
 FIRST_ACCEPTED = "first accepted hit"
 COINCIDENT = "coincident hits"
-EDGE = "isolated edge"
+EDGE = "rays through edges"
 UNDEFINED = "undefined ray"
 BEYOND_BINARY32 = "lengths beyond binary32"
 FAR_SPHERE = "spheres smaller than rounding"
@@ -36,30 +35,21 @@ REASONS = {
     BEYOND: "a candidate behind the hit that is accepted in the end is seen or not, by the traversal order",
     FIRST_ACCEPTED: "a terminated ray or a counting any-hit keeps the first accepted hit in traversal order, not the nearest",
     COINCIDENT: "which of several hits at one distance wins is left open",
-    EDGE: "an isolated edge follows a top-left rule there, is closed in Embree",
+    EDGE: "edges follow a top-left rule there: an isolated one is open or closed by its direction, a shared one gives one call; in Embree "
+    "edges are closed, and every triangle that meets in an edge is called",
     FAR_SPHERE: "the ray begins so far away that its coordinates are rounded by more than the sphere's size",
     UNDEFINED: "NaN in the ray, or an infinite origin or direction, is undefined; here built-in primitives and boxes are missed",
     BEYOND_BINARY32: "the square of the direction's length leaves binary32: which primitives cope differs",
 } | oracle_curve_differences.REASONS
-
-# Driver bugs and undefined behaviour that the oracle's README names; a probe that matches is compared by the text beside it.
-NOT_COPIED = {
-    r"01_sbt-primitiveIndexOffset$": "primitiveIndexOffset 0xFFFFFFF0 comes back as a 30-bit field there",
-    r"01_sbt-primitiveIndexOffset_random_access$": "out-of-range primitive indices return some clamped primitive there",
-    r"06_motion-.*zero_range": "timeBegin == timeEnd: intrinsic and traversal disagree there; refused by name here",
-    r"06_motion-.*reversed_range": "timeBegin > timeEnd is undefined there; refused by name here",
-    r"07_custom-hitkind_25[45]$": "hit kinds 254 and 255 pretend to be triangles there and crash; refused by name here",
-    r"13_degenerate-degenerate_triangles$": "an infinite vertex is hit with t = NaN there",
-}
 
 REQUIRE_SINGLE = 2
 TERMINATE_ON_FIRST_HIT = 4
 COUNTING_MODES = (2, 4, 5, 6)
 # Two computed distances of one crossing differ by rounding only; hits this near to each other count as one place.
 SAME_PLACE = 1e-6
-# Directions whose squared length is a normal number of binary32.
 # A number of calls that no counting any-hit program of the records waits for.
 UNCOUNTED = 0xffff
+# Directions whose squared length is a normal number of binary32.
 SHORTEST, LONGEST = 1e-18, 1e18
 # The rounding of a coordinate, relative to it.
 BINARY32 = 2.0**-24
@@ -67,37 +57,7 @@ BINARY32 = 2.0**-24
 ORDER_KEYS = frozenset({"p", "p1", "tmaxBefore", "tmaxAfter"})
 
 
-def not_copied(probe: Probe) -> str | None:
-    """Why a probe records something that is not to be copied, or None."""
-    return next((reason for pattern, reason in NOT_COPIED.items() if re.search(pattern, probe.id)), None)
-
-
-class Known:
-    """Every candidate that was recorded anywhere for a ray of a scene, whatever its any-hit program did with it."""
-
-    def __init__(self, probes: list[Probe]) -> None:
-        self._hits: dict[str, set[tuple[int, float]]] = {}
-        for probe in probes:
-            for ray in probe.rays:
-                hits = self._hits.setdefault(_place(probe, ray["in"]), set())
-                hits.update((event["prim"], round(number(event["tmax"]), 5)) for event in ray["events"] if event["ev"] in ("AH", "CH"))
-
-    def has(self, probe: Probe, given: dict[str, Any], event: dict[str, Any]) -> bool:
-        """Whether this candidate was ever recorded for this ray, or is found by brute force."""
-        if any(prim == event["prim"] and close(t, event["tmax"], 2e-5) for prim, t in self._hits.get(_place(probe, given), ())):
-            return True
-        if brute_force_curves.is_on_curve(probe.scene, given, event):
-            return True
-        found = brute_force.scene_candidates(probe.scene, given)
-        return any(hit.primitive == event["prim"] and close(hit.t, event["tmax"], 1e-5, ray_scale(given)) for hit in found)
-
-
-def _place(probe: Probe, given: dict[str, Any]) -> str:
-    shape = [{key: value for key, value in node.items() if key != "buildFlags"} for node in probe.scene]
-    return json.dumps([shape, given["root"], given["o"], given["d"], given["time"]])
-
-
-def compare(probe: Probe, index: int, result: RayResult, known: Known) -> tuple[set[str], list[str]]:
+def compare(probe: Probe, index: int, result: RayResult) -> tuple[set[str], list[str]]:
     """The named differences that explain our result for a ray, and what stays unexplained."""
     recorded = probe.rays[index]
     given = recorded["in"]
@@ -107,14 +67,23 @@ def compare(probe: Probe, index: int, result: RayResult, known: Known) -> tuple[
         kinds = {event["ev"] for event in recorded["events"]}
         events = [event for event in events if event["ev"] in kinds]
     strict = _strict(probe, events, recorded, given)
-    if not strict and result.payload == recorded["p"] and (not trimmed or result.event_count == recorded["nev"]):
-        return set(), []
-    if name := _exempt(probe, given):
+    if not strict:
+        return _of_payload(result, recorded, trimmed)
+    if name := _exempt(probe, given) or ray_not_copied(probe, events, recorded["events"]):
         return {name}, []
-    names, unexplained = _explain(probe, given, events, recorded["events"], known, strict)
+    names, unexplained = _explain(probe, given, events, recorded["events"], strict)
     if unexplained and (name := curve_difference(probe, given, events, recorded["events"])):
         return {name}, []
     return names, unexplained
+
+
+def _of_payload(result: RayResult, recorded: dict[str, Any], trimmed: bool) -> tuple[set[str], list[str]]:
+    """What the payload tells where the events agree. Calls that the files left out still count in words 1 and 2."""
+    if result.payload == recorded["p"]:
+        return set(), []
+    if trimmed and (result.payload[0], result.payload[3]) == (recorded["p"][0], recorded["p"][3]):
+        return {REPETITION}, []
+    return set(), [f"payload {result.payload} recorded {recorded['p']}"]
 
 
 def _exempt(probe: Probe, given: dict[str, Any]) -> str | None:
@@ -125,9 +94,7 @@ def _exempt(probe: Probe, given: dict[str, Any]) -> str | None:
         return UNDEFINED
     if not SHORTEST < math.hypot(*direction) < LONGEST and any(direction):
         return BEYOND_BINARY32
-    if _is_far(probe, given):
-        return FAR_SPHERE
-    return EDGE if brute_force.passes_edge(probe.scene, given) else None
+    return FAR_SPHERE if _is_far(probe, given) else None
 
 
 def _is_far(probe: Probe, given: dict[str, Any]) -> bool:
@@ -158,7 +125,7 @@ def _brief(events: list[dict[str, Any]]) -> str:
                     for event in events)
 
 
-def _explain(probe: Probe, given: dict[str, Any], ours: list[dict[str, Any]], theirs: list[dict[str, Any]], known: Known,
+def _explain(probe: Probe, given: dict[str, Any], ours: list[dict[str, Any]], theirs: list[dict[str, Any]],
              strict: list[str]) -> tuple[set[str], list[str]]:
     scale = ray_scale(given)
     left_ours, left_theirs = _pair(ours, theirs, scale)
@@ -166,15 +133,17 @@ def _explain(probe: Probe, given: dict[str, Any], ours: list[dict[str, Any]], th
     if names and sum(event["ev"] in ("AH", "IS") for event in ours) < 2:
         return set(), strict
     names |= _drop(left_ours, left_theirs, SECOND_CROSSING,
-                   lambda event: crosses_again(event, ours) and _candidate(probe, given, event, known))
+                   lambda event: crosses_again(event, ours) and _candidate(probe, given, event))
     names |= _drop_repeated(probe, left_ours, left_theirs, ours, theirs, scale)
     if _order_decides(probe, given, ours + theirs):
-        names |= _drop(left_ours, left_theirs, FIRST_ACCEPTED, lambda event: _candidate(probe, given, event, known))
+        names |= _drop(left_ours, left_theirs, FIRST_ACCEPTED, lambda event: _candidate(probe, given, event))
     ends = [end for events in (ours, theirs) if (end := _end(probe, events)) is not None]
-    names |= _drop(left_ours, left_theirs, BEYOND, lambda event: (_beyond(event, ends) and _candidate(probe, given, event, known))
+    names |= _drop(left_ours, left_theirs, BEYOND, lambda event: (_beyond(event, ends) and _candidate(probe, given, event))
                    or _box_beyond(probe, given, event, ends))
     if _coincident(probe, given, ours + theirs):
-        names |= _drop(left_ours, left_theirs, COINCIDENT, lambda event: _candidate(probe, given, event, known))
+        names |= _drop(left_ours, left_theirs, COINCIDENT, lambda event: _candidate(probe, given, event))
+    if edges := brute_force.edges_passed(probe.scene, given):
+        names |= _drop(left_ours, left_theirs, EDGE, lambda event: _after_edge(probe, given, event, edges))
     if left_ours or left_theirs:
         return names, [*strict, f"unexplained: ours {_brief(left_ours)} recorded {_brief(left_theirs)}"]
     return names, []
@@ -223,12 +192,32 @@ def _drop(left_ours: list[dict[str, Any]], left_theirs: list[dict[str, Any]], na
     return {name} if len(left_ours) + len(left_theirs) < before else set()
 
 
-def _candidate(probe: Probe, given: dict[str, Any], event: dict[str, Any], known: Known) -> bool:
-    return event["ev"] in ("IS", "RP") or (event["ev"] in ("AH", "CH") and known.has(probe, given, _with_number(event)))
+def _candidate(probe: Probe, given: dict[str, Any], event: dict[str, Any]) -> bool:
+    """Whether the ray has this hit, by brute force; or a call before the hit of a custom primitive whose box it meets."""
+    if event["ev"] not in ("AH", "CH"):
+        return event["ev"] in ("IS", "RP")
+    t = number(event["tmax"])
+    if brute_force_curves.is_on_curve(probe.scene, given, {**event, "tmax": t}) or _is_reported(probe, given, event, t):
+        return True
+    found = brute_force.scene_candidates(probe.scene, given)
+    return any(hit.primitive == event["prim"] and close(hit.t, t, 1e-5, ray_scale(given)) for hit in found)
 
 
-def _with_number(event: dict[str, Any]) -> dict[str, Any]:
-    return {**event, "tmax": number(event["tmax"])}
+def _is_reported(probe: Probe, given: dict[str, Any], event: dict[str, Any], t: float) -> bool:
+    """Whether the intersection program of the record reports this hit for a box that the ray meets."""
+    data = next(hit["data"] for hit in probe.hitgroups if hit["data"]["id"] == event["rec"])
+    reported = [number(one["t"]) + number(one["tPerPrim"]) * event["prim"] for one in data.get("reports", [])]
+    return any(close(t, one) for one in reported) and any(
+        box.primitive == event["prim"] for box in brute_force.scene_boxes(probe.scene, given))
+
+
+def _after_edge(probe: Probe, given: dict[str, Any], event: dict[str, Any], edges: dict[int, float]) -> bool:
+    """Whether the event hangs on whether a triangle whose edge the ray passes is met: its own calls, and what follows behind it."""
+    if event["ev"] == "MS":
+        return True
+    if event["ev"] not in ("AH", "CH") or number(event["tmax"]) < min(edges.values()) * (1.0 - SAME_PLACE):
+        return False
+    return event["prim"] in edges or _candidate(probe, given, event)
 
 
 def _order_decides(probe: Probe, given: dict[str, Any], events: list[dict[str, Any]]) -> bool:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import tempfile
 from pathlib import Path
 from typing import Any
@@ -17,6 +18,7 @@ from optixc.diagnostics import CompileError
 
 INDICES, MAX_ROWS, RECORDS, MISSES, CALLABLE_INDEX, EXCEPTION_ID = 3, 64, 9, 4, 6, 77
 MAX_TRACE_DEPTH = 4
+EXCEPTION_FLAG_USER, DEPTH_MODE = 4, 8
 DETAIL, RECORD, DIMENSION = 2, 10, 11
 COMPILE_ERROR = '''
 import optixc as ox
@@ -28,11 +30,21 @@ def __raygen__throws():
 '''
 
 
+def is_refused_code(probe: Probe) -> bool:
+    """Whether the record is a compile error that names the code of an exception."""
+    return _refused_code(probe) is not None
+
+
+def _refused_code(probe: Probe) -> str | None:
+    found = re.search(r"Exception code .* Found (-?\d+)", str(probe.data["rc"]))
+    return found.group(1) if found else None
+
+
 def check_refused_code(harness: Harness, probe: Probe) -> None:
     """A code outside 0 to 2^30 - 1 is a compile error."""
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "code.py"
-        path.write_text(COMPILE_ERROR.format(code=-1 if probe.name.endswith("BNEG") else 1 << 30))
+        path.write_text(COMPILE_ERROR.format(code=_refused_code(probe)))
         with pytest.raises(CompileError, match="exception code"):
             harness.context.module_create(path)
 
@@ -40,8 +52,11 @@ def check_refused_code(harness: Harness, probe: Probe) -> None:
 def check_exceptions(harness: Harness, probe: Probe) -> None:
     """Trail, exceptions and depth log are the recorded ones; details that were not passed are stale there and not compared."""
     data = {key.split("(")[0].split("[")[0]: value for key, value in probe.data.items()}
+    assert (data["launch"], data["sync"]) == ("OPTIX_SUCCESS", 0), "a launch that fails is not understood"
+    assert data["exceptionCount"] == len(data["exceptions"])
     details = data["numDetails"]
-    with_program = data["name"] != "user_exc_no_exception_program"
+    # a throw that is enabled and leaves no exception had no program to write it down
+    with_program = not data["exceptionFlags"] & EXCEPTION_FLAG_USER or data["exceptionCount"] > 0 or data["mode"] == DEPTH_MODE
     trail, exceptions, depth_log = _run(harness, data, with_program)
     assert trail == data["perLaunchIndex"]
     recorded = [row[:DETAIL] + row[DETAIL:DETAIL + details] * (row[0] == data["code"]) + row[RECORD:DIMENSION + 1]

@@ -13,6 +13,8 @@ from typing import Any
 
 DEFAULT_FOLDER = Path(__file__).resolve().parents[2] / ".." / "shared" / "oracle"
 
+# The largest offset or stride of a ray: they have four bits.
+FIELD = 15
 HITGROUP_KINDS = {"triangles": "tri", "custom": "custom", "spheres": "sphere", "curves": "curve"}
 
 
@@ -47,13 +49,21 @@ class Probe:
 
     @property
     def hitgroups(self) -> list[dict[str, Any]]:
-        """The hit records. Where none were recorded, record i has the id i and the plain programs, as many as the events name."""
+        """The hit records. Where none were recorded, record i has the id i and the plain programs, as many as the rays can reach."""
         if self.data["hitgroups"]:
             return list(self.data["hitgroups"])
-        last = max((event["rec"] for ray in self.rays for event in ray["events"]), default=0)
-        types = [item["type"] for node in self.scene for item in node.get("buildInputs", [])]
-        kind = HITGROUP_KINDS[types[0]] if types else "tri"
-        return [{"kind": kind, "ch": True, "ah": True, "data": {"id": index, "ahMode": 0, "ahArg": 0}} for index in range(last + 1)]
+        kinds = {HITGROUP_KINDS[item["type"]] for node in self.scene for item in node.get("buildInputs", [])} or {"tri"}
+        if len(kinds) > 1:
+            raise ValueError(f"no hit groups were recorded for a scene of {sorted(kinds)}: which record is of which kind is not known")
+        plain = {"ahMode": 0, "ahArg": 0}
+        return [{"kind": min(kinds), "ch": True, "ah": True, "data": {"id": index, **plain}} for index in range(self._last_record() + 1)]
+
+    def _last_record(self) -> int:
+        """A bound of the record indices that the rays can reach: offsets of instances and rays, and records of structures by the stride."""
+        seen = max((event["rec"] for ray in self.rays for event in ray["events"]), default=0)
+        offsets = [max((one["sbtOffset"] for one in node.get("instances", [])), default=0) for node in self.scene]
+        records = [sum(item["numSbtRecords"] for item in node.get("buildInputs", [])) for node in self.scene]
+        return int(max(seen, sum(offsets) + FIELD * max(records, default=0)))
 
 
 def folder() -> Path:
@@ -62,11 +72,14 @@ def folder() -> Path:
 
 
 def probes() -> list[Probe]:
-    """Every probe of every group, in the order of the files; empty where the folder is absent."""
+    """Every probe of every group, in the order of the files; empty where the folder is absent. A file that is no group is one probe too."""
     found: list[Probe] = []
     for path in sorted(folder().glob("*.json")):
-        group = json.loads(path.read_text())
-        found.extend(Probe(str(group["group"]), data) for data in group["probes"])
+        try:
+            group = json.loads(path.read_text())
+            found.extend(Probe(str(group.get("group", path.stem)), {"name": "?", **data}) for data in group["probes"])
+        except (ValueError, KeyError, TypeError, AttributeError) as error:
+            found.append(Probe(path.stem, {"name": path.name, "unreadable": str(error)}))
     return found
 
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from typing import Any
 
 import numpy as np
@@ -21,15 +20,11 @@ CUSTOM_RECORD = 5
 STATE_KEYS = ("tag", "isHit", "isMiss", "isNop", "instId", "instIdx", "prim", "nTransforms", "gasIdx", "hitKind", "rayFlags",
               "sbtRecordIndex", "sbtDataId")
 STATE_VECTORS = {"wo": (0, 3), "wd": (3, 3), "uv": (9, 2), "o2w": (11, 12), "vert": (23, 9)}
-MODE_OF_NAME = re.compile(r"hitobject_(\d+)_")
-USING_TRAVERSE_DATA = 7
 
 
 def mode_of(probe: Probe) -> int:
-    """The mode of the ray generation program, which the probe's name holds."""
-    found = MODE_OF_NAME.match(probe.name)
-    assert found is not None, probe.name
-    return int(found.group(1))
+    """The mode of the ray generation program: ten times it is the tag of its first state."""
+    return int(probe.data["states"][0]["tag"]) // 10
 
 
 def check_hit_objects(harness: Harness, probe: Probe) -> None:

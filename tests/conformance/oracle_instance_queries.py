@@ -14,10 +14,17 @@ from oracle_files import Probe, numbers
 from oracle_instances import ask
 from oracle_scene import build, handle_of
 
-INSTANCE_OP, STATIC_OP = 1, 9
+INSTANCE_OP, TYPE_OP, STATIC_OP = 1, 2, 9
+OPS = (INSTANCE_OP, TYPE_OP, STATIC_OP)
+QUERY_KEYS = {"q", "op", "type", "id", "child", "f"}
 RANDOM_ACCESS = 32
 TRIANGLE = {"type": "triangles", "vertices": [[0, 0, 0, 1, 0, 0, 0, 1, 0]], "flags": [0], "numSbtRecords": 1}
 NAMED_INSTANCE = re.compile(r"(\w+)\[(\d+)\]")
+
+
+def is_instance_query(probe: Probe) -> bool:
+    """Whether the probe asks handles of instances and transforms for what they lead to."""
+    return all(isinstance(query, dict) and set(query) == QUERY_KEYS and query["op"] in OPS for query in probe.data["queries"])
 
 
 def check_instance_queries(harness: Harness, probe: Probe) -> None:

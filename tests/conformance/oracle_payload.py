@@ -16,15 +16,21 @@ import optixc as ox
 
 MAX_ROWS = 256
 DISABLE_ANYHIT, DISABLE_CLOSESTHIT = 1, 8
-# What a program of the recorded pipelines does against the semantics of its payload type.
-VIOLATIONS = {
-    "BADREAD": "def __closesthit__bad(ray: Narrow):\n    params.seen[8] = ray.answer\n",
-    "BADWRITE": "def __closesthit__bad(ray: Narrow):\n    ray.told = 1\n",
-    "BADIDX": "def __closesthit__bad(ray: Open):\n    ray.sixth = 1\n",
-}
+# Tags of the rows, by the program that wrote them.
+CLOSEST_HIT, ANYHIT, MISS = 2, 5, 6
+# The fields of the payload types by number, and what a program of the recorded pipelines does with a word against its semantics, by the
+# words of OptiX's message.
+FIELDS = {0: ("Narrow", ("told", "answer", "counted")), 1: ("Open", ("word",))}
+BODIES = {"Get": "    params.seen[8] = ray.{field}\n", "Set": "    ray.{field} = 1\n"}
+MESSAGE = re.compile(r"payload value (\d+) of payload type (\d+) in optix(Get|Set)Payload|optix(Get|Set)Payload\w*.*?payload type (\d+)")
+# Where the message does not say which word it was.
+BEYOND = "beyond"
+RESULT = "OPTIX_ERROR_INVALID_PAYLOAD_ACCESS"
 SEEN = 9
 # A word that the trace does not bring back: 0 there, which is not guaranteed; here it cannot be read.
 NOT_BROUGHT_BACK = 0
+# What the miss program answers.
+MISSED = 2222
 
 
 def check_payload32(harness: Harness, probe: Probe) -> None:
@@ -32,9 +38,9 @@ def check_payload32(harness: Harness, probe: Probe) -> None:
     recorded = [[row["tag"], row["depth"], *row["p"]] for row in probe.data["rows"]]
     tags = {row[0] for row in recorded}
     depth = 1 + max(row[1] for row in recorded)
-    # the name says what the rows do not: ignored hits, misses, and the flag that keeps closest hit from running
-    mode = 2 if re.search("ignore", probe.name) else 1 if re.search("miss", probe.name) else 0
-    flags = (DISABLE_CLOSESTHIT if "disable_ch" in probe.name else 0) | (0 if 5 in tags else DISABLE_ANYHIT)
+    # which programs wrote rows says how the ray was aimed, what any-hit did and which flags were set
+    mode = 0 if MISS not in tags else 2 if ANYHIT in tags else 1
+    flags = (0 if tags & {CLOSEST_HIT, MISS} else DISABLE_CLOSESTHIT) | (0 if ANYHIT in tags else DISABLE_ANYHIT)
     assert _run(harness, depth, mode, flags) == recorded
 
 
@@ -62,19 +68,28 @@ def check_payload_types(harness: Harness, probe: Probe) -> None:
     hit = [create(closesthit=module[f"__closesthit__{name}"], anyhit=module[f"__anyhit__{name}"]) for name in ("narrow", "open")]
     pipeline = harness.pipeline("payload types", [raygen, *miss, *hit])
     gas = harness.context.accel_build([ox.BuildInputTriangles(np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0]], np.float32))])
-    seen = np.zeros(SEEN, np.uint32)
+    seen, recorded = np.zeros(SEEN, np.uint32), list(probe.data["u"])
     sbt = ox.ShaderBindingTable(raygen=raygen.record(), miss=[one.record() for one in miss], hitgroup=[one.record() for one in hit])
-    harness.launch(pipeline, payload_types.Params(scene=gas.handle, seen=seen, mode=int("miss" in probe.name)), sbt, 1)
-    recorded = list(probe.data["u"])
+    harness.launch(pipeline, payload_types.Params(scene=gas.handle, seen=seen, mode=int(recorded[1] == MISSED)), sbt, 1)
     recorded[NOT_BROUGHT_BACK] = 0
     assert seen[:len(recorded)].tolist() == recorded
 
 
+def is_payload_violation(probe: Probe) -> bool:
+    """Whether the record is a module that was refused for a payload word."""
+    return str(probe.data["rc"]) == RESULT and MESSAGE.search(str(probe.data["log"])) is not None
+
+
 def check_payload_violation(harness: Harness, probe: Probe) -> None:
     """The program is refused when its module is created."""
-    program = VIOLATIONS[probe.name.rsplit("_", 1)[1]]
+    found = MESSAGE.search(str(probe.data["log"]))
+    assert found is not None
+    name, fields = FIELDS[int(found.group(2) or found.group(5))]
+    index = int(found.group(1) or len(fields))
+    body = BODIES[found.group(3) or found.group(4)].format(field=fields[index] if index < len(fields) else BEYOND)
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "violation.py"
-        path.write_text(f"{(SHADERS / 'payload_types.py').read_text()}\n\n@ox.program\n{program}", encoding="utf-8")
-        with pytest.raises(ox.CompileError, match=r"Narrow|Open"):
+        source = f"{(SHADERS / 'payload_types.py').read_text()}\n\n@ox.program\ndef __closesthit__bad(ray: {name}):\n{body}"
+        path.write_text(source, encoding="utf-8")
+        with pytest.raises(ox.CompileError, match=name):
             harness.context.module_create(path)

@@ -5,13 +5,13 @@ Where the scene was not recorded it is made from the answers: the triangles of e
 
 from __future__ import annotations
 
-import re
 from typing import Any
 
 import numpy as np
 from harness import Harness
 from oracle_compare import close
 from oracle_files import Probe, number, numbers
+from oracle_not_copied import query_not_copied
 from oracle_scene import build, handle_of
 from shaders import random_access as shader
 
@@ -19,16 +19,17 @@ import optixc as ox
 
 CORNER_NUMBERS = 9
 VERTICES_OP, MOTION_OP = 4, 0
-# by the notes of the group: the moving triangle of the vertex-motion probes
-MOVING_HEIGHTS = {2: (0.0, 4.0), 3: (0.0, 4.0, -2.0)}
+QUERY_KEYS = frozenset({"op", "time", "f", "u0", "verts", "prim", "primIdx", "sbtGASIndex"})
 RANDOM_ACCESS = ox.BuildFlags.ALLOW_RANDOM_VERTEX_ACCESS
 
 
 def is_triangle_query(probe: Probe) -> bool:
     """Whether the probe asks for the corners of triangles."""
     query = probe.data["queries"][0]
-    answer = query.get("verts", query.get("f", [])) if isinstance(query, dict) else query
-    return len(answer) == CORNER_NUMBERS and (not isinstance(query, dict) or query.get("op", VERTICES_OP) == VERTICES_OP)
+    if not isinstance(query, dict):
+        return len(query) == CORNER_NUMBERS
+    answer = query.get("verts", query.get("f", []))
+    return set(query) <= QUERY_KEYS and len(answer) == CORNER_NUMBERS and query.get("op", VERTICES_OP) in (VERTICES_OP, MOTION_OP)
 
 
 def moves(probe: Probe) -> bool:
@@ -41,8 +42,10 @@ def check_triangle_queries(harness: Harness, probe: Probe) -> None:
     asked = [_normal_form(index, query) for index, query in enumerate(probe.data["queries"])]
     gas = _scene(harness, probe, asked)
     corners, motion = _run(harness, handle_of(gas), asked, moves(probe))
-    for row, (_, _, _, answer, motion_answer) in enumerate(asked):
-        if motion_answer is not None:
+    for row, (_, gas_index, _, answer, motion_answer) in enumerate(asked):
+        if reason := query_not_copied(probe, gas_index):
+            print(f"{probe.id}: query {row} not copied: {reason}")
+        elif motion_answer is not None:
             assert motion[row] == motion_answer
         elif all(np.isfinite(answer)):  # the answer for a NaN vertex is garbage there
             assert all(close(a, b) for a, b in zip(corners[row], answer, strict=True)), (probe.data["queries"][row], corners[row])
@@ -61,16 +64,20 @@ def _scene(harness: Harness, probe: Probe, asked: list[Any]) -> Any:
     if probe.scene:
         return next(iter(build(harness.context, probe.scene).values()))
     if moves(probe):
-        found = re.search(r"(\d)keys", probe.name)
-        assert found is not None
-        heights = MOVING_HEIGHTS[int(found.group(1))]
-        keys = [np.array([[0, 0, z], [8, 0, z], [0, 8, z]], np.float32) for z in heights]
+        begin, end, count = next((motion for *_, motion in asked if motion is not None), (0.0, 1.0, 2.0))
+        keys = [_corners_at(asked, begin + (end - begin) * key / (count - 1.0)) for key in range(int(count))]
         return harness.context.accel_build([ox.BuildInputTriangles(keys)], build_flags=RANDOM_ACCESS,
-                                           motion_options=ox.MotionOptions(len(keys), 0.0, 1.0))
+                                           motion_options=ox.MotionOptions(len(keys), begin, end))
     records = sorted({gas_index for _, gas_index, *_ in asked})
     inputs = [ox.BuildInputTriangles(np.array([answer for _, index, _, answer, _ in asked if index == record], np.float32).reshape(-1, 3))
               for record in records]
     return harness.context.accel_build(inputs, build_flags=RANDOM_ACCESS)
+
+
+def _corners_at(asked: list[Any], time: float) -> np.ndarray:
+    """The corners of the moving triangle at the time of one of its keys, which must have been asked for."""
+    answer = next(answer for _, _, when, answer, motion in asked if motion is None and when == time)
+    return np.array(answer, np.float32).reshape(-1, 3)
 
 
 def _run(harness: Harness, handle: int, asked: list[Any], motion: bool) -> tuple[list[list[float]], list[list[float]]]:

@@ -7,6 +7,7 @@ from pathlib import Path
 import pytest
 from harness import Harness
 from oracle_differences import REASONS
+from oracle_not_copied import NOT_COPIED
 from scenes import closest, gas, hitgroup, missed, ray, trace, triangles
 from test_spheres import spheres
 
@@ -17,6 +18,11 @@ NEXT_TO_ZERO = 2.0**-64
 @pytest.mark.parametrize("name", REASONS)
 def test_every_difference_is_told(name: str) -> None:
     assert f"| {name} | {REASONS[name]} |" in PAGE
+
+
+@pytest.mark.parametrize("there", NOT_COPIED)
+def test_what_is_not_copied_is_told(there: str) -> None:
+    assert f"| {there} | {NOT_COPIED[there]} |" in PAGE
 
 
 def test_hits_next_to_the_origin_begin_at_two_to_the_minus_64(harness: Harness) -> None:

@@ -56,7 +56,7 @@ def decided(scene: list[dict[str, Any]], one: dict[str, Any], hits: list[brute_f
     """Whether binary32 cannot turn the answer: no edge, end point or second hit is too near."""
     bounds = [one["in"]["tmin"], *(hit.t for hit in hits), one["in"]["tmax"]]
     apart = all(b - a > AMBIGUOUS * max(1.0, abs(a)) for a, b in itertools.pairwise(bounds))
-    return apart and not brute_force.passes_edge(scene, one["in"], AMBIGUOUS)
+    return apart and not brute_force.edges_passed(scene, one["in"], AMBIGUOUS)
 
 
 @SLOW
