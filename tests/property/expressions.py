@@ -51,10 +51,14 @@ class Scope:
     names: dict[str, str] = field(default_factory=dict)
     places: list[tuple[str, str]] = field(default_factory=list)
     """Texts of fields and elements with their types."""
+    read_only: list[tuple[str, str]] = field(default_factory=list)
+    """What can be read and not written: items of tuples."""
+    references: list[tuple[str, str]] = field(default_factory=list)
+    """Structs and fixed arrays, which helpers take by reference."""
+    tuples: dict[str, tuple[str, ...]] = field(default_factory=dict)
     callees: list[Callee] = field(default_factory=list)
     in_program: bool = True
     """Whether launch parameters can be read by row `i`."""
-    has_state: bool = False
 
 
 class Expressions:
@@ -73,7 +77,8 @@ class Expressions:
 
     def leaf(self, type_: str) -> str:
         """A name, a place, an input or a constant."""
-        found = [name for name, of in self.scope.names.items() if of == type_] + [text for text, of in self.scope.places if of == type_]
+        found = [name for name, of in self.scope.names.items() if of == type_]
+        found += [text for text, of in (*self.scope.places, *self.scope.read_only) if of == type_]
         if found and self.random.random() < 0.8:
             return self.random.choice(found)
         if type_ in VECTORS:
@@ -100,7 +105,7 @@ class Expressions:
 
     def _makers(self, type_: str) -> list[Callable[[str, int], str]]:
         makers: list[Callable[[str, int], str]] = [self._conditional]
-        if any(callee.result == type_ for callee in self.scope.callees):
+        if self._callees(type_):
             makers += [self._call] * 2
         if type_ == "bool":
             return [*makers, self._comparison, self._comparison, self._logic, self._logic, self._bool_of, self._bool_bits]
@@ -116,14 +121,21 @@ class Expressions:
     def _conditional(self, type_: str, depth: int) -> str:
         return f"({self.expression(type_, depth)} if {self.condition(depth)} else {self.expression(type_, depth)})"
 
+    def _callees(self, type_: str) -> list[Callee]:
+        """Functions with this result for whose references there is something."""
+        known = {of for _, of in self.scope.references}
+        values = {*SCALARS, *VECTORS}
+        return [one for one in self.scope.callees if one.result == type_ and all(of in values or of in known for _, of in one.parameters)]
+
     def _call(self, type_: str, depth: int) -> str:
-        callee = self.random.choice([callee for callee in self.scope.callees if callee.result == type_])
+        callee = self.random.choice(self._callees(type_))
         given = len(callee.parameters) - (self.random.randint(0, callee.defaults) if callee.defaults else 0)
         arguments = []
         by_name = False
         for name, of in callee.parameters[:given]:
-            text = "state" if of == "State" else self.expression(of, depth - 1)
-            by_name = by_name or (of != "State" and self.random.random() < 0.15)
+            references = [text for text, kind in self.scope.references if kind == of]
+            text = self.random.choice(references) if references else self.expression(of, depth - 1)
+            by_name = by_name or self.random.random() < 0.15
             arguments.append(f"{name}={text}" if by_name else text)
         return f"{callee.name}({', '.join(arguments)})"
 
@@ -177,9 +189,16 @@ class Expressions:
         text = self.expression(vector, depth)
         if self.random.random() < 0.2:
             return f"{text}[{self.random.randrange(size)}]"
+        if size != 3 and self.random.random() < 0.2:
+            return f"{text}[{self.expression(self.random.choice(('int32', 'uint32')), depth)} & {size - 1}]"
         return f"{text}.{self.random.choice('xyzw'[:size])}"
 
     def _integer_function(self, type_: str, depth: int) -> str:
+        if {"memory", "effects"} <= self.scope.features and self.scope.in_program and self.random.random() < 0.15:
+            name = self.random.choice(("add", "sub", "exch", "min", "max", "and", "or", "xor"))
+            return f"ox.atomic_{name}(params.out_{type_}, (i, {self.random.randrange(8)}), {self.expression(type_, depth)})"
+        if self.random.random() < 0.15:
+            return f"{self.random.choice(('min', 'max'))}({self.expression(type_, depth)}, {self.operand(type_, depth)})"
         name = self.random.choice(("min", "max", "clamp", "abs", "sign", "popcount", "clz", "ctz", "bits"))
         if name == "bits":
             return self._bits(type_, depth)
@@ -241,7 +260,12 @@ class Expressions:
             head = VECTOR_OF[element, size - 1]
             return f"{type_}({self.expression(head, depth)}, {self.operand(element, depth)})"
         if kind < 0.7 and type_ == "float3" and "matrices" in self.scope.features:
-            return f"({self.expression('float3x3', depth)} @ {self.expression('float3', depth)})"
+            matrix = self.expression("float3x3", depth)
+            if self.random.random() < 0.3:
+                return f"{matrix}[{self.random.randrange(3)}]"
+            if self.random.random() < 0.2:
+                return "AXIS"
+            return f"({matrix} @ {self.expression('float3', depth)})"
         return f"{type_}({', '.join(self.operand(element, depth) for _ in range(size))})"
 
     def _swizzle(self, type_: str, depth: int) -> str:

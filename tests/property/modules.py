@@ -15,6 +15,8 @@ STRUCTS = (
     StructType("Small", (("a", "int8"), ("b", "uint8"), ("c", "int16"), ("d", "uint16"), ("e", "float16"), ("f", "bool"))),
     StructType("Wide", (("n", "int64"), ("x", "float64"), ("v", "float3"), ("w", "uint2"))),
     StructType("Nested", (("first", "Small"), ("k", "int32"), ("second", "Wide"), ("list", "ox.FixedArray[float32, 4]"))),
+    StructType("Packed", (("c", "uchar4"), ("h", "half4"), ("s", "short2"), ("b", "char3"), ("u", "ushort3"), ("l", "longlong2"))),
+    StructType("Rows", (("items", "ox.FixedArray[Small, 2]"), ("rows", "ox.FixedArray[float3, 4]"), ("m", "float3x4"))),
 )
 
 
@@ -26,15 +28,25 @@ def _class_texts() -> str:
 
 PRELUDE = f'''
 import optixc as ox
-from enum import IntEnum
+from enum import IntEnum, IntFlag
 from optixc import bool2, bool3, bool4, float3x3, float3x4, float4x4
 from optixc import {", ".join(VECTORS)}
-from optixc import int8, uint8, int16, uint16, float16, {", ".join(NUMBERS)}
+from optixc import int8, uint8, int16, uint16, float16, uchar4, half4, short2, char3, ushort3, {", ".join(NUMBERS)}
+
+LIMIT = 7
+AXIS = float3(0.25, -2.0, 1.5)
 
 
 class Mode(IntEnum):
     FIRST = 1
     SECOND = 2
+
+
+class Bits(IntFlag):
+    A = 1
+    B = 4
+    C = 8
+    BOTH = A | B
 
 
 @ox.struct
@@ -78,6 +90,33 @@ def int_bits(value: float32) -> int32:
 
 
 @ox.device
+def stir(small: Small, by: int32) -> int32:
+    small.a, small.c = small.c + by, small.a
+    small.e *= 0.5
+    return small.a if small.f else small.c
+
+
+@ox.device
+def mingle(first: Small, second: Small) -> bool:
+    first.d += second.b
+    second.f = not first.f
+    return first.d > second.d
+
+
+@ox.device
+def turn(values: ox.FixedArray[float32, 4], by: int32) -> float32:
+    values[by & 3], values[(by + 1) & 3] = values[(by + 1) & 3], values[by & 3]
+    return values[0]
+
+
+@ox.device
+def small_of(number: int32, x: float32) -> Small:
+    if number > LIMIT:
+        return Small(number, 2, number, 4, x, True)
+    return Small(a=1, b=uint32(number), c=-number, d=Bits.BOTH, e=x + AXIS.y, f=False)
+
+
+@ox.device
 def blend(a, b, t=0.25):
     if a > b:
         return a - b * t
@@ -107,6 +146,9 @@ EFFECTS = (
     Callee("tick", (("state", "State"), ("step", "int32")), "int32"),
     Callee("flip", (("state", "State"), ("value", "bool")), "bool"),
     Callee("scale", (("state", "State"), ("value", "float32"), ("factor", "float32")), "float32", defaults=1),
+    Callee("stir", (("small", "Small"), ("by", "int32")), "int32"),
+    Callee("mingle", (("first", "Small"), ("second", "Small")), "bool"),
+    Callee("turn", (("values", "ox.FixedArray[float32, 4]"), ("by", "int32")), "float32"),
 )
 PURE = (
     Callee("blend", (("a", "float32"), ("b", "float32"), ("t", "float32")), "float32", defaults=1),
@@ -139,6 +181,7 @@ def program_text(recipe: Recipe, name: str) -> str:
         callees.append(helper)
         text += lines
     scope = Scope(random, recipe.features, callees=callees + list(EFFECTS if "effects" in recipe.features else ()))
+    scope.references.append(("state", "State"))
     body = Body(scope, STRUCTS, "v")
     body.budget = recipe.size
     body.add("i = int32(ox.get_launch_index().x)")
@@ -162,9 +205,10 @@ def _helper(random: Random, recipe: Recipe, name: str, callees: list[Callee]) ->
     types = [random.choice((*SCALARS, *VECTORS)) for _ in range(random.randint(1, 3))]
     parameters = tuple(([("state", "State")] if has_state else []) + [(f"a{number}", of) for number, of in enumerate(types)])
     result = random.choice((*SCALARS, *VECTORS))
-    known = [callee for callee in callees if has_state or callee.parameters[0][1] != "State"]
+    known = list(callees)
     scope = Scope(random, recipe.features - {"memory"}, in_program=False, callees=known + list(EFFECTS if has_state else ()))
     scope.names.update((name_of, of) for name_of, of in parameters if of != "State")
+    scope.references += [(name_of, of) for name_of, of in parameters if of == "State"]
     body = Body(scope, STRUCTS, "w")
     body.result = result
     body.budget = max(1, recipe.size // 3)
@@ -186,7 +230,7 @@ def _take_apart(body: Body, random: Random) -> None:
 def _observe(body: Body) -> None:
     """Everything that has a value goes to memory, type by type, so that a wrong bit anywhere is seen."""
     columns = dict.fromkeys(OUTPUT_TYPES, 0)
-    found = [*body.scope.names.items(), *body.scope.places, ("state.count", "int32"), ("state.trail", "uint32")]
+    found = [*body.scope.names.items(), *body.scope.places, *body.scope.read_only, ("state.count", "int32"), ("state.trail", "uint32")]
     parts: list[tuple[str, str]] = []
     for text, type_ in found:
         if type_ in VECTORS:

@@ -2,37 +2,22 @@
 
 from __future__ import annotations
 
-from expressions import INPUT_COLUMNS, Callee, Expressions, Scope
-from types_of_programs import INTEGERS, MATRICES, NUMBERS, SCALARS, STORAGE, VECTORS, StructType, literal
+from aggregates import Aggregates, operators_of
+from expressions import INPUT_COLUMNS, Callee, Scope
+from types_of_programs import INTEGERS, MATRICES, NUMBERS, SCALARS, VECTORS, StructType, literal
 
 OUTPUT_COLUMNS = 12
 OUTPUT_TYPES = NUMBERS
 
 
-class Body:
+class Body(Aggregates):
     """The lines of one function; names are bound once with one type, those of a block are forgotten at its end."""
 
     def __init__(self, scope: Scope, structs: tuple[StructType, ...], prefix: str) -> None:
-        self.scope = scope
-        self.random = scope.random
-        self.structs = structs
-        self.prefix = prefix
-        self.make = Expressions(scope)
-        self.lines: list[str] = []
-        self.level = 1
+        super().__init__(scope, structs, prefix)
         self.loops = 0
-        self.count = 0
         self.result: str | None = None
         self.budget = 0
-
-    def add(self, text: str) -> None:
-        """One line at the current indentation."""
-        self.lines.append("    " * self.level + text)
-
-    def fresh(self) -> str:
-        """A name that nobody has yet."""
-        self.count += 1
-        return f"{self.prefix}{self.count}"
 
     def statements(self, number: int) -> None:
         """A block of about that many statements; it is never empty."""
@@ -52,8 +37,8 @@ class Body:
             self._assign()
         elif random < 0.6:
             self._augment()
-        elif random < 0.66 and self._numbers():
-            self._swap()
+        elif random < 0.66:
+            self._several()
         elif random < 0.72 and "memory" in features and self.scope.in_program:
             self._write()
         elif random < 0.82:
@@ -76,60 +61,31 @@ class Body:
         if random < 0.2 and "arrays" in self.scope.features:
             self.new_array(name)
             return
+        if random < 0.26 and "tuples" in self.scope.features:
+            self.new_tuple(name)
+            return
         types = [*SCALARS, *NUMBERS, *VECTORS] + (list(MATRICES) if "matrices" in self.scope.features else [])
         type_ = self.random.choice(types)
         annotation = f": {type_}" if self.random.random() < 0.4 else ""
         self.add(f"{name}{annotation} = {self.make.expression(type_, 3)}")
         self.scope.names[name] = type_
-
-    def new_struct(self, name: str) -> None:
-        """A struct with all of its fields as places."""
-        struct = self.random.choice(self.structs)
-        self.add(f"{name} = {self._struct_value(struct)}")
-        self._struct_places(name, struct)
-
-    def _struct_value(self, struct: StructType) -> str:
-        arguments = []
-        by_name = False
-        for field, type_ in struct.fields:
-            nested = next((one for one in self.structs if one.name == type_), None)
-            if nested is not None:
-                text = self._struct_value(nested)
-            elif type_.startswith("ox.FixedArray"):
-                text = f"{type_}()"
-            else:
-                text = self.make.expression(STORAGE.get(type_, type_), 2)
-                text = f"{type_}({text})" if type_ in STORAGE and self.random.random() < 0.5 else text
-            by_name = by_name or self.random.random() < 0.2
-            arguments.append(f"{field}={text}" if by_name else text)
-        return f"{struct.name}({', '.join(arguments)})"
-
-    def _struct_places(self, name: str, struct: StructType) -> None:
-        for field, type_ in struct.fields:
-            nested = next((one for one in self.structs if one.name == type_), None)
-            if nested is not None:
-                self._struct_places(f"{name}.{field}", nested)
-            elif type_.startswith("ox.FixedArray"):
-                self._array_places(f"{name}.{field}", type_)
-            else:
-                self.scope.places.append((f"{name}.{field}", STORAGE.get(type_, type_)))
-
-    def new_array(self, name: str) -> None:
-        """A fixed array; elements at constant and at computed places."""
-        element = self.random.choice((*NUMBERS, *VECTORS))
-        type_ = f"ox.FixedArray[{element}, {self.random.choice((2, 4, 8))}]"
-        self.add(f"{name} = {type_}()")
-        self._array_places(name, type_)
-
-    def _array_places(self, name: str, type_: str) -> None:
-        element, size = type_.removeprefix("ox.FixedArray[").removesuffix("]").split(", ")
-        element = STORAGE.get(element, element)
-        self.scope.places.append((f"{name}[{self.random.randrange(int(size))}]", element))
-        index = self.make.expression(self.random.choice(("int32", "uint32")), 1)
-        self.scope.places.append((f"{name}[{index} & {int(size) - 1}]", element))
+        if type_ in MATRICES:
+            self.matrix_places(name, type_)
+        elif type_ in VECTORS and self.random.random() < 0.5:
+            self.vector_place(name, type_)
 
     def _assign(self) -> None:
+        random = self.random.random()
+        if random < 0.15 and self.scope.references:
+            self.assign_struct()
+            return
+        if random < 0.25 and self.scope.tuples:
+            self.assign_tuple()
+            return
         target, type_ = self._target()
+        others = [text for text, of in (*self.scope.names.items(), *self.scope.places) if of == type_]
+        if others and self.random.random() < 0.15:
+            target = f"{target} = {self.random.choice(others)}"
         self.add(f"{target} = {self.make.expression(type_, 3)}")
 
     def _target(self) -> tuple[str, str]:
@@ -152,26 +108,34 @@ class Body:
         if element not in NUMBERS:
             self.add(f"{target} = {self.make.expression(type_, 2)}")
             return
-        operators = ["+", "-", "*", "//", "%"] + (["&", "|", "^"] if element in INTEGERS else ["/"])
-        operator = self.random.choice(operators)
+        operator = self.random.choice(operators_of(element))
         value = self.make.expression(type_, 2)
         if self.random.random() < 0.3:
             value = literal(self.random, element, nonzero=True)
+        if element in INTEGERS and self.random.random() < 0.25:
+            operator, value = self.random.choice((("<<", "{}"), (">>", "{}"), ("**", "({} & 3)")))
+            value = value.format(self.random.randrange(6) if operator != "**" or type_ in VECTORS else self.make.expression(type_, 1))
         self.add(f"{target} {operator}= {value}")
 
-    def _numbers(self) -> list[str]:
-        return [name for name, type_ in self.scope.names.items() if type_ in SCALARS]
-
-    def _swap(self) -> None:
-        """Two or three targets at once: all values are taken before any is written."""
-        of = self.scope.names[self.random.choice(self._numbers())]
-        names = [name for name, type_ in self.scope.names.items() if type_ == of]
-        targets = self.random.sample(names, min(len(names), self.random.choice((2, 3))))
-        values = [self.make.expression(of, 2) if self.random.random() < 0.4 else self.random.choice(names) for _ in targets]
-        if len(targets) == 1:
-            self.add(f"{targets[0]} = {values[0]}")
+    def _several(self) -> None:
+        """Two or three targets at once, perhaps nested: all values are taken before any is written."""
+        targets = [self._target() for _ in range(self.random.choice((2, 2, 3)))]
+        if self.random.random() < 0.6:
+            # Mostly of one type, so that they change places.
+            of = targets[0][1]
+            same = [text for text, type_ in (*self.scope.names.items(), *self.scope.places) if type_ == of]
+            targets = [targets[0], *((self.random.choice(same), of) for _ in targets[1:] if same)]
+        values = [self._taken(targets, of) for _, of in targets]
+        texts = [text for text, _ in targets]
+        if len(texts) == 3 and self.random.random() < 0.3:
+            self.add(f"({texts[0]}, {texts[1]}), {texts[2]} = ({values[0]}, {values[1]}), {values[2]}")
         else:
-            self.add(f"{', '.join(targets)} = {', '.join(values)}")
+            self.add(f"{', '.join(texts)} = {', '.join(values)}")
+
+    def _taken(self, targets: list[tuple[str, str]], of: str) -> str:
+        """A value for one of several targets, often another of them."""
+        same = [text for text, type_ in targets if type_ == of]
+        return self.random.choice(same) if self.random.random() < 0.6 else self.make.expression(of, 2)
 
     def _write(self) -> None:
         type_ = self.random.choice(OUTPUT_TYPES)
@@ -183,13 +147,18 @@ class Body:
 
     def block(self, number: int) -> None:
         """An indented block; the names and places that it makes end with it."""
-        names, places = dict(self.scope.names), list(self.scope.places)
+        names, tuples = dict(self.scope.names), dict(self.scope.tuples)
+        lists = (self.scope.places, self.scope.read_only, self.scope.references)
+        lengths = [len(one) for one in lists]
         self.level += 1
         self.statements(number)
         self.level -= 1
         self.scope.names.clear()
         self.scope.names.update(names)
-        self.scope.places[:] = places
+        self.scope.tuples.clear()
+        self.scope.tuples.update(tuples)
+        for one, length in zip(lists, lengths, strict=True):
+            del one[length:]
 
     def _if(self) -> None:
         self.add(f"if {self.make.condition(3)}:")
@@ -204,7 +173,7 @@ class Body:
     def _for(self) -> None:
         counter = self.fresh()
         of = self.random.choice(("int32", "uint32"))
-        bounds = self.random.choice(("stop", "both", "step", "down", "constant"))
+        bounds = self.random.choice(("stop", "both", "step", "down", "any step", "constant"))
         small = f"({self.make.expression(of, 1)} & {self.random.choice((3, 7))})"
         match bounds:
             case "stop":
@@ -216,6 +185,12 @@ class Body:
             case "down":
                 of = "int32"
                 text = f"{self.make.expression('int32', 1)} & 7, {self.random.randint(-3, 2)}, {self.random.choice((-1, -2))}"
+            case "any step":
+                of = "int32"
+                steps = self.make.expression("int32", 1)
+                text = f"{self.make.expression('int32', 1)} & 7, {self.make.expression('int32', 1)} & 15, {steps} & 3 | 1"
+                if self.random.random() < 0.5:
+                    text = f"{self.make.expression('int32', 1)} & 15, -3, -({steps} & 3) - 1"
             case _:
                 of = "int32"
                 text = str(self.random.randint(1, 5))
@@ -227,10 +202,15 @@ class Body:
 
     def _while(self) -> None:
         counter = self.fresh()
+        limit = self.random.randint(1, 6)
+        is_endless = self.random.random() < 0.3
         self.add(f"{counter} = 0")
-        self.add(f"while {counter} < {self.random.randint(1, 6)} and {self.make.condition(2)}:")
+        self.add("while True:" if is_endless else f"while {counter} < {limit} and {self.make.condition(2)}:")
         self.level += 1
         self.add(f"{counter} += 1")
+        if is_endless:
+            self.add(f"if {counter} > {limit} or {self.make.condition(1)}:")
+            self.add("    break")
         self.level -= 1
         self._loop_body()
         self.scope.names[counter] = "int32"
@@ -241,10 +221,16 @@ class Body:
         self.loops -= 1
 
     def _match(self) -> None:
-        of = self.random.choice(("int32", "uint32"))
-        self.add(f"match {self.make.expression(of, 2)} & 3:")
+        of = self.random.choice(("int32", "uint32", "int64", "uint64", "bool"))
+        if of == "bool":
+            self.add(f"match {self.make.expression(of, 2)}:")
+            cases = self.random.sample(("True", "False", "True | False"), self.random.randint(1, 2))
+        else:
+            shift = " - 2" if of.startswith("i") and self.random.random() < 0.3 else ""
+            self.add(f"match ({self.make.expression(of, 2)} & 3){shift}:")
+            cases = self.random.sample(("0", "1", "2", "1 | 3", "Mode.SECOND", "Bits.A | Bits.BOTH"), self.random.randint(1, 3))
+            cases += ["-1", "-2 | 1"] if shift else []
         self.level += 1
-        cases = self.random.sample(("0", "1", "2", "1 | 3", "Mode.SECOND"), self.random.randint(1, 3))
         for case in cases:
             guard = f" if {self.make.condition(1)}" if self.random.random() < 0.2 else ""
             self.add(f"case {case}{guard}:")

@@ -36,6 +36,44 @@ PROGRAMS = {
         k = 100
     params.out_int32[i, 0] = k
 """,
+    "items_that_a_helper_changes": """
+    smalls = ox.FixedArray[Small, 2](Small(1, 2, 3, 4, 0.5, True), Small(6, 7, 8, 9, 1.5, False))
+    rows = Rows(ox.copy(smalls), ox.FixedArray[float3, 4](), float3x4(float4(), float4(), float4()))
+    value = stir(rows.items[0], 7) if params.in_int32[i, 0] > 3 else 4
+    value += stir(rows.items[params.in_int32[i, 1] & 1], i)
+    if mingle(rows.items[params.in_int32[i, 2] & 1], rows.items[params.in_int32[i, 3] & 1]):
+        value += 1000 * tick(state, rows.items[1].a)
+    params.out_int32[i, 0] = value + rows.items[0].a + 5 * rows.items[1].a + 7 * rows.items[0].c + 11 * rows.items[1].c
+    params.out_uint32[i, 0] = rows.items[0].d + 100 * rows.items[1].d + 10000 * state.trail
+""",
+    "parts_of_storage_vectors": """
+    packed = Packed(uchar4(250), half4(1.0), short2(7), char3(1, 2, 3), ushort3(4), longlong2(5))
+    packed.c.x += 300
+    packed.c[i & 3] = 513
+    packed.b.y = -129
+    packed.s = int2(100000, i)
+    packed.h.z = 1.0 / 3.0
+    packed.h[i & 3] += 0.1
+    packed.u.x, packed.u.y = packed.u.y + 65536, packed.u.x - 5
+    params.out_uint32[i, 0] = packed.c.x + 256 * packed.c.y + 65536 * packed.c.z + 7 * packed.c.w + packed.u.x + 3 * packed.u.y
+    params.out_int32[i, 0] = packed.b.y + 1000 * packed.s.x + packed.s.y
+    params.out_float32[i, 0] = packed.h.x + 2.0 * packed.h.y + 4.0 * packed.h.z + 8.0 * packed.h.w
+""",
+    "fixed_arrays_of_fixed_arrays": """
+    grid = ox.FixedArray[ox.FixedArray[Small, 2], 2]()
+    grid[i & 1][params.in_int32[i, 0] & 1] = Small(1, 2, 3, 4, 0.5, True)
+    grid[params.in_int32[i, 1] & 1][i & 1].a += 5
+    value = stir(grid[params.in_int32[i, 2] & 1][params.in_int32[i, 3] & 1], i)
+    for row in range(2):
+        for column in range(2):
+            value = value * 31 + grid[row][column].a + 7 * grid[row][column].c
+    params.out_int32[i, 0] = value
+""",
+    "enum_in_the_index_of_a_target": """
+    values = ox.FixedArray[int32, 8]()
+    values[Mode.SECOND], values[Bits.A | Bits.BOTH], value = i, 2 * i, values[LIMIT]
+    params.out_int32[i, Mode.FIRST], params.out_int32[i, 0] = values[2] + value, values[5]
+""",
 }
 
 

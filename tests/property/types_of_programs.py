@@ -19,11 +19,15 @@ WIDENS_TO = {
 }
 """Into what a number goes without a conversion."""
 
-VECTORS = {
-    f"{family}{size}": (element, size)
-    for family, element in (("float", "float32"), ("int", "int32"), ("uint", "uint32"), ("double", "float64"))
-    for size in (2, 3, 4)
-}
+_FAMILIES = (
+    ("float", "float32"),
+    ("int", "int32"),
+    ("uint", "uint32"),
+    ("double", "float64"),
+    ("longlong", "int64"),
+    ("ulonglong", "uint64"),
+)
+VECTORS = {f"{family}{size}": (element, size) for family, element in _FAMILIES for size in (2, 3, 4)}
 VECTOR_OF = {of: name for name, of in VECTORS.items()}
 MATRICES = {"float3x3": (3, 3), "float3x4": (3, 4), "float4x4": (4, 4)}
 
@@ -39,6 +43,9 @@ _REAL = (
     *("16777217.0", "2147483648.0", "3", "-2"),
 )
 
+NAMED = ("Mode.SECOND", "LIMIT", "(Bits.A | Bits.C)", "Bits.BOTH", "(LIMIT << 2)")
+"""Enum members and constants of the module, which are literals to the compiler; none is zero."""
+
 
 @dataclass(frozen=True)
 class StructType:
@@ -48,7 +55,10 @@ class StructType:
     fields: tuple[tuple[str, str], ...]
 
 
-STORAGE = {"int8": "int32", "uint8": "uint32", "int16": "int32", "uint16": "uint32", "float16": "float32"}
+STORAGE = {
+    **{"int8": "int32", "uint8": "uint32", "int16": "int32", "uint16": "uint32", "float16": "float32"},
+    **{"char3": "int3", "uchar4": "uint4", "short2": "int2", "ushort3": "uint3", "half4": "float4"},
+}
 """Types of memory only, and what reading them gives."""
 
 
@@ -62,6 +72,8 @@ def literal(random: Random, type_: str, nonzero: bool = False) -> str:
     if type_ == "bool":
         return random.choice(("True", "False"))
     choices = _REAL if type_ in FLOATS else (*_WHOLE, *_LARGE[type_])
+    if type_ in INTEGERS and random.random() < 0.08:
+        return random.choice(NAMED)
     text = random.choice(choices)
     while nonzero and float(int(text, 0) if type_ not in FLOATS else text) == 0.0:
         text = random.choice(choices)

@@ -46,7 +46,7 @@ from optixc.ir.nodes import (
     Trace,
     While,
 )
-from optixc.ir.types import Void
+from optixc.ir.types import Vector, Void
 from optixc.ir.walk import Body, expressions, place_root, statements
 from optixc.passes.uniformity import Clone
 
@@ -163,7 +163,7 @@ class LaneFunction:
             case Return():
                 self._return(statement)
             case CallHelper():
-                self._call(statement, statement.target, self._calls.helper(statement))
+                self._call_helper(statement)
             case CallIntrinsic():
                 self._call(statement, statement.target, self._calls.intrinsic(statement))
             case CallCallable():
@@ -191,10 +191,11 @@ class LaneFunction:
         root = place_root(target)
         assert root is not None
         value = self._expressions.stored(self._expressions.text(statement.value), statement.value, target.type)
+        if root.name in self._clone.varying and isinstance(target.type, Vector) and target.type != statement.value.type:
+            value = self._expressions.stored(self._expressions.wide(statement.value), statement.value, target.type)
         place = self._expressions.place(target)
-        varying_index = next((node for node in _chain(target) if isinstance(node, IndexRef) and self._dialect.varies(node.index)), None)
-        if varying_index is not None:
-            self._writer.line(self._calls.store_item(target, varying_index, statement.value), statement.span)
+        if self._calls.has_varying_index(target):
+            self._writer.line(self._calls.store_item(target, statement.value), statement.span)
         elif root.name not in self._clone.varying or self._is_plain(root):
             self._writer.line(f"{place} = {value};", statement.span)
         else:
@@ -389,6 +390,19 @@ class LaneFunction:
 
     # ---- calls ---------------------------------------------------------------------------------------------------------------
 
+    def _call_helper(self, statement: CallHelper) -> None:
+        target = statement.target
+        name = None if target is None else self._names.locals[target.name]
+        on_items = self._calls.helper_on_items(statement, name)
+        if on_items is None:
+            self._call(statement, target, self._calls.helper(statement))
+            return
+        if target is not None and id(statement) in self._declarations.at_statement:
+            self._homes[target.name] = self._mask
+            self._writer.line(f"{self._unread(target)}{self._type(target)} {name}{{}};", statement.span)
+        self._writer.line(f"{on_items}", statement.span)
+        self._leave_after(statement)
+
     def _call(self, statement: CallHelper | CallIntrinsic | CallCallable, target: Local | None, call: tuple[str, bool] | None) -> None:
         """Writes a call; `call` is its text and whether its result varies. Lanes for which it ended something leave."""
         if call is None:
@@ -424,18 +438,8 @@ class LaneFunction:
             self._writer.line(assertion_call(statement, [self._names.thread, self._mask], condition, values), statement.span)
 
 
-def _chain(place: Expr) -> list[Expr]:
-    """The place and what it is a part of, outermost part first."""
-    chain: list[Expr] = []
-    node: Expr = place
-    while True:
-        chain.append(node)
-        if not isinstance(node, FieldRef | ComponentRef | IndexRef):
-            return chain
-        node = node.base
-
-
 def _element_of(place: Expr) -> ElementRef | None:
     """The array element that a place is, or is a part of."""
-    last = _chain(place)[-1]
-    return last if isinstance(last, ElementRef) else None
+    while isinstance(place, FieldRef | ComponentRef | IndexRef):
+        place = place.base
+    return place if isinstance(place, ElementRef) else None

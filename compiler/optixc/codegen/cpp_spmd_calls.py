@@ -5,6 +5,7 @@ from __future__ import annotations
 from optixc.codegen.cpp_scalar_calls import timed
 from optixc.codegen.cpp_signatures import FunctionNames, Signatures
 from optixc.codegen.cpp_spmd_expr import PAYLOAD_SETTER, LaneExpressions
+from optixc.codegen.cpp_spmd_items import ItemLoops, has_varying_index
 from optixc.codegen.cpp_spmd_types import WideTypes
 from optixc.codegen.cpp_types import field_name
 from optixc.codegen.names import string_literal
@@ -82,27 +83,18 @@ class LaneCalls:
                 assert place is element
                 return "element"
 
-    def store_item(self, target: Expr, indexed: IndexRef, value: Expr) -> str:
+    def store_item(self, target: Expr, value: Expr) -> str:
         """A store to an item of a local's fixed array, vector or matrix by an index that varies, or to a part of that item."""
-        base = self._expressions.place(indexed.base)
-        part = self._part_of_item(target, indexed)
-        text = self._expressions.stored(self._expressions.wide(value), value, target.type)
-        setting = f"[&, value = {text}](auto& item, Mask own) {{ oxrt::assign(own, {part}, value); }}"
-        return f"oxrt::eachItem({self._mask}, {base}, {self._expressions.text(indexed.index)}, {setting});"
+        loops = self._loops(self._expressions.stored(self._expressions.wide(value), value, target.type))
+        place = loops.place(target)
+        return loops.around(f"oxrt::assign({loops.mask}, {place}, value);")
 
-    def _part_of_item(self, place: Expr, item: IndexRef) -> str:
-        match place:
-            case IndexRef() if place is item:
-                return "item"
-            case FieldRef(base=base, name=name):
-                assert isinstance(base.type, Struct)
-                return f"{self._part_of_item(base, item)}.{field_name(base.type, name)}"
-            case ComponentRef(base=base, components=(component,)):
-                return f"{self._part_of_item(base, item)}.{'xyzw'[component]}"
-            case IndexRef(base=base, index=index):
-                return f"{self._part_of_item(base, item)}[{self._expressions.text(index)}]"
-            case _:
-                raise AssertionError("the place is no part of the item")
+    def has_varying_index(self, place: Expr) -> bool:
+        """Whether lanes name different items on the way to a place of a local."""
+        return has_varying_index(self._expressions, place)
+
+    def _loops(self, value: str = "") -> ItemLoops:
+        return ItemLoops(self._expressions, self._names.locals.values(), value)
 
     # ---- calls ---------------------------------------------------------------------------------------------------------------
 
@@ -111,6 +103,19 @@ class LaneCalls:
         arguments = tuple(self._argument(argument) for argument in statement.arguments)
         callee = self._expressions.lanes.callee(statement.function, statement.arguments)
         return self._expressions.lanes.helper_call(statement.function, statement.arguments, arguments), callee.result_varies
+
+    def helper_on_items(self, statement: CallHelper, target: str | None) -> str | None:
+        """The call for the lanes of one item after the other, where a place that the helper changes has an index that varies; else None."""
+        function, nodes = statement.function, statement.arguments
+        callee = self._expressions.lanes.callee(function, nodes)
+        written = [parameter.written and parameter.local.by_reference for parameter in callee.function.parameters]
+        if not any(changes and self.has_varying_index(node) for changes, node in zip(written, nodes, strict=True)):
+            return None
+        loops = self._loops()
+        places = tuple(loops.place(node) if self.has_varying_index(node) else self._argument(node) for node in nodes)
+        with self._expressions.lanes.under(loops.mask):
+            call = self._expressions.lanes.helper_call(function, nodes, places)
+        return loops.around(f"{call};" if target is None else f"oxrt::assign({loops.mask}, {target}, {call});")
 
     def intrinsic(self, statement: CallIntrinsic) -> tuple[str, bool] | None:
         """A device function with an effect; those without a form over lanes are each lane's own call, lowest lane first. None for a
@@ -202,14 +207,15 @@ class LaneCalls:
     def trace(self, statement: Trace) -> list[str]:
         """The trace; where the handle or unknown flags vary, once for each value among the lanes."""
         programs = f"{self._signatures.program_class(statement.payload_type)}Lanes"
-        payload = "oxrt::noPayload" if statement.payload is None else self._expressions.place(statement.payload)
+        loops, mask_of_all = self._loops(), self._mask
+        payload = "oxrt::noPayload" if statement.payload is None else loops.place(statement.payload)
         arguments = [self._expressions.text(argument) for argument in statement.arguments]
         flags = known_flags(statement)
-        mask = self._mask
+        mask = loops.mask
         heads: list[str] = []
         hit_object = [] if statement.name == "trace" else [self._names.hit_object]
         if statement.name == "invoke":
-            return [f"oxrt::invoke<{programs}>({', '.join([self._names.thread, mask, *hit_object, payload])});"]
+            return [loops.around(f"oxrt::invoke<{programs}>({', '.join([self._names.thread, mask, *hit_object, payload])});")]
         if flags is not None:
             arguments[_FLAGS_ARGUMENT] = f"oxrt::KnownFlags<{flags & 0xFFFF}>()"
         for position, name in ((_HANDLE_ARGUMENT, "handle"), (_FLAGS_ARGUMENT, "flags")):
@@ -218,10 +224,11 @@ class LaneCalls:
                 heads.append(f"oxrt::eachValue({mask}, {arguments[position]}, [&](auto {name}, Mask {own}) {{")
                 arguments[position], mask = name, own
         call = f"oxrt::{statement.name}<{programs}>({', '.join([self._names.thread, mask, *hit_object, *arguments, payload])});"
-        return [*heads, call, *("});" for _ in heads)]
+        lines = [*heads, call, *("});" for _ in heads)]
+        return lines if mask_of_all is loops.mask else [loops.around(" ".join(lines))]
 
     def _argument(self, argument: Expr) -> str:
         """An argument of a helper; structs and fixed arrays stay places, so that they can be passed by reference."""
         is_place = is_reference_type(argument.type) and isinstance(argument, LocalRef | FieldRef | IndexRef | ElementRef)
-        is_loaded = isinstance(argument, ElementRef) and self._expressions.lanes.varies(argument)
+        is_loaded = self.has_varying_index(argument) or (isinstance(argument, ElementRef) and self._expressions.lanes.varies(argument))
         return self._expressions.place(argument) if is_place and not is_loaded else self._expressions.text(argument)

@@ -90,6 +90,13 @@ class LaneDialect:
         yield
         self.mask, self.is_conditional = outer
 
+    @contextmanager
+    def under(self, mask: str) -> Iterator[None]:
+        """Runs a part under another mask that is as sure to have lanes."""
+        outer, self.mask = self.mask, mask
+        yield
+        self.mask = outer
+
     def condition(self, text: str) -> str:
         """A mask written down before the statement; its name."""
         return text if text.isidentifier() else self._hoist("test", text)
@@ -247,11 +254,12 @@ class LaneExpressions(Expressions):
         """Initialisers of a wide struct: whole values that are uniform are spread first."""
         if not self.lanes.varies(node):
             return super()._members(struct, node, arguments)
-        texts = [self.stored(text, value, field.type) for field, value, text in zip(struct.fields, node.arguments, arguments, strict=False)]
-        return [
-            text if isinstance(argument.type, Scalar | Vector) or self.lanes.varies(argument) else self.wide(argument)
-            for argument, text in zip(node.arguments, texts, strict=True)
-        ]
+        members = []
+        for field, argument, text in zip(struct.fields, node.arguments, arguments, strict=False):
+            spreads_itself = isinstance(argument.type, Scalar) or (isinstance(argument.type, Vector) and field.type == argument.type)
+            stays = self.lanes.varies(argument) or spreads_itself
+            members.append(self.stored(text if stays else self.wide(argument), argument, field.type))
+        return members
 
 
 def _needs_mask(*expressions: Expr) -> bool:

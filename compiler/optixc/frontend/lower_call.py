@@ -40,6 +40,7 @@ from optixc.ir.nodes import (
     Expr,
     FieldRef,
     HelperCall,
+    IndexRef,
     IntrinsicCall,
     Literal,
     Local,
@@ -275,8 +276,8 @@ def _helper(low: FunctionLowering, node: ast.Call, use: HelperUse, block: Block)
 
 
 def _can_be_written(low: FunctionLowering, value: Expr) -> bool:
-    """Whether a reference may name this place: a local; elements of arrays are read as values."""
-    while isinstance(value, FieldRef | ComponentRef):
+    """Whether a reference may name this place: a local, or a part of one; elements of arrays are read as values."""
+    while isinstance(value, FieldRef | IndexRef):
         value = value.base
     if not isinstance(value, LocalRef):
         return False

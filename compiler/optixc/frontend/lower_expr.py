@@ -149,9 +149,10 @@ def lower_place(low: FunctionLowering, node: ast.expr, block: Block, keep_indice
         case FieldUse(name=name, stored=stored):
             return FieldRef(_base(low, node.value, block, keep_indices, is_target), name, stored)
         case SwizzleUse(components=components):
-            assert isinstance(info.type, t.Scalar | t.Vector)
             base = _base(low, node.value, block, keep_indices, is_target)
-            return ComponentRef(base, components, info.type)
+            assert isinstance(base.type, t.Vector)
+            element = base.type.element
+            return ComponentRef(base, components, element if len(components) == 1 else t.Vector(element, len(components)))
         case TupleUse(index=index):
             base = lower_expression(low, node.value, block)
             if isinstance(base, Construct):
@@ -162,7 +163,8 @@ def lower_place(low: FunctionLowering, node: ast.expr, block: Block, keep_indice
             is_place = keep_indices or is_target or isinstance(low.info(node.value).type, t.FixedArray)
             parts = [partial(_base_of, low, node.value, is_place), partial(lower_expression, low, index)]
             base, position = low.in_order_by(parts, block, [node.value, index], places=(0,) if is_place else ())
-            return IndexRef(base, _kept(low, position, block, index, keep_indices), stored)
+            item = base.type.element if isinstance(base.type, t.Vector) else stored
+            return IndexRef(base, _kept(low, position, block, index, keep_indices), item)
         case ElementUse(indices=indices, stored=stored):
             array, *positions = low.in_order([node.value, *indices], block)
             kept = [_kept(low, value, block, index, keep_indices) for value, index in zip(positions, indices, strict=True)]
@@ -175,10 +177,10 @@ def _base_of(low: FunctionLowering, node: ast.expr, keep_indices: bool, block: B
 
 
 def _base(low: FunctionLowering, node: ast.expr, block: Block, keep_indices: bool, is_target: bool = False) -> Expr:
-    """What a field or component is taken of: a place where possible, so that nothing is copied."""
+    """What a field or component is taken of: a place where possible, so that nothing is copied. One that is written is not widened."""
     if isinstance(node, ast.Name | ast.Attribute | ast.Subscript) and low.info(node).constant is None and node not in low.substitutes:
         place = lower_place(low, node, block, keep_indices, is_target)
-        return place if keep_indices or not isinstance(place.type, t.Vector | t.Scalar) else read(place)
+        return place if keep_indices or is_target or not isinstance(place.type, t.Vector | t.Scalar) else read(place)
     return lower_expression(low, node, block)
 
 

@@ -246,9 +246,9 @@ def _assign_pairs(low: FunctionLowering, targets: list[ast.expr], values: list[E
                 written.add(low.instance.bindings[name])
             elif isinstance(name, ast.Attribute | ast.Subscript):
                 writes_memory = True
-            elif isinstance(name, ast.Name) and isinstance(use := low.info(name).use, LocalUse):
-                # The root of a component or field.
-                written.add(use.local)
+            elif isinstance(name, ast.Name) and (info := low.instance.info.get(name)) is not None and isinstance(info.use, LocalUse):
+                # The root of a component or field; modules and enums in an index have no info.
+                written.add(info.use.local)
     for target, value in zip(targets, ready, strict=True):
         _assign_value(low, target, value, block)
 

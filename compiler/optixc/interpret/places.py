@@ -98,8 +98,14 @@ def _path(steps: list[ast.expr], target: ast.AST) -> ast.expr:
 def stored_type(code: Code, target: ast.expr) -> t.Type:
     """The type that a place holds, storage types included."""
     use = code.info(target).use
-    match use:
-        case FieldUse(stored=stored) | ElementUse(stored=stored) | IndexUse(stored=stored):
+    match target, use:
+        case (ast.Attribute(value=base), SwizzleUse()) | (ast.Subscript(value=base), IndexUse()) if isinstance(
+            code.info(base).type, t.Vector
+        ):
+            vector = stored_type(code, base)
+            assert isinstance(vector, t.Vector)
+            return vector.element
+        case _, FieldUse(stored=stored) | ElementUse(stored=stored) | IndexUse(stored=stored):
             return stored
         case _:
             type_ = code.info(target).type

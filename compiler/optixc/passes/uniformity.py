@@ -21,10 +21,12 @@ from optixc.ir.nodes import (
     CallIntrinsic,
     Continue,
     Expr,
+    FieldRef,
     ForRange,
     Function,
     HelperCall,
     If,
+    IndexRef,
     IntrinsicCall,
     LocalRef,
     ParameterRole,
@@ -232,6 +234,14 @@ class _FunctionAnalysis:
         indices = [operand for operand in operands(place) if not isinstance(operand, LocalRef)]
         return any(self.varies(index) for index in indices) and place_root(place) is not None
 
+    def _names_items(self, place: Expr) -> bool:
+        """Whether lanes name different items of a local on the way to a place."""
+        while isinstance(place, FieldRef | IndexRef):
+            if isinstance(place, IndexRef) and self.varies(place.index):
+                return True
+            place = place.base
+        return False
+
     def _assigned(self, name: str, varies: bool, path: Region) -> None:
         home = self._homes.get(name, ())
         apart = any(id(owner) in self._clone.divergent for owner in path[len(home) :])
@@ -275,11 +285,17 @@ class _FunctionAnalysis:
     def _call(self, statement: CallHelper, path: Region) -> None:
         varying = tuple(self.varies(argument) for argument in statement.arguments)
         callee = self._analysis.helper(statement.function, varying, self._clone.in_intersection)
-        for parameter, argument, varies in zip(callee.function.parameters, statement.arguments, callee.parameters, strict=True):
-            if is_reference_type(argument.type) and parameter.written:
-                self._store(argument, varies, path)
+        # Lanes that name different items make the call item after item: whatever it changes has lanes of its own.
+        written = [
+            is_reference_type(argument.type) and parameter.written
+            for parameter, argument in zip(callee.function.parameters, statement.arguments, strict=True)
+        ]
+        apart = any(self._names_items(argument) for argument, changes in zip(statement.arguments, written, strict=True) if changes)
+        for argument, changes, varies in zip(statement.arguments, written, callee.parameters, strict=True):
+            if changes:
+                self._store(argument, varies or apart, path)
         if statement.target is not None:
-            self._assigned(statement.target.name, callee.result_varies, path)
+            self._assigned(statement.target.name, callee.result_varies or apart, path)
 
     # ---- expressions ---------------------------------------------------------------------------------------------------------
 

@@ -21,7 +21,8 @@ template <class T, int W> using Wide = typename WideType<T, W>::Type;
 template <Scalar T, int W> struct WideType<T, W> { using Type = Lanes<typename WidenedNumber<T>::Type, W>; };
 template <Scalar T, int N, int W> struct WideType<Vector<T, N>, W> { using Type = Vector<Wide<T, W>, N>; };
 template <Scalar T, int R, int C, int W> struct WideType<Matrix<T, R, C>, W> { using Type = Matrix<Wide<T, W>, R, C>; };
-template <class T, int SIZE, int W> struct WideType<FixedArray<T, SIZE>, W> { using Type = FixedArray<Wide<T, W>, SIZE>; };
+template <class T, int W> concept HasWide = requires { typename WideType<T, W>::Type; };
+template <class T, int SIZE, int W> requires HasWide<T, W> struct WideType<FixedArray<T, SIZE>, W> { using Type = FixedArray<Wide<T, W>, SIZE>; };
 template <class T, int RANK, int W> struct WideType<Array<T, RANK>, W> { using Type = VaryingArray<Array<T, RANK>, W>; };
 template <class... T, int W> struct WideType<Tuple<T...>, W> { using Type = Tuple<Wide<T, W>...>; };
 template <class T, int W> struct WideType<Word<T>, W> { using Type = Wide<T, W>; };
@@ -158,7 +159,7 @@ template <int W, class T> OXRT_INLINE Wide<T, W> spread(const T& value) {
 
 /* The value as its wide form, if it is not wide already. */
 template <int W, class T> OXRT_INLINE auto asWide(const T& value) {
-    if constexpr (requires { typename WideType<T, W>::Type; })
+    if constexpr (HasWide<T, W>)
         return spread<W>(value);
     else
         return value;

@@ -1,0 +1,69 @@
+"""Places inside of fixed arrays, vectors and matrices by an index that differs between lanes: one item after the other, each with the
+lanes that name it."""
+
+from __future__ import annotations
+
+from collections.abc import Collection
+
+from optixc.codegen.cpp_spmd_expr import LaneExpressions
+from optixc.codegen.cpp_types import field_name
+from optixc.ir.nodes import ComponentRef, ElementRef, Expr, FieldRef, IndexRef
+from optixc.ir.types import Struct
+
+
+class ItemLoops:
+    """The loops around what is done with places; `mask` are the lanes for which it is done inside of them."""
+
+    def __init__(self, expressions: LaneExpressions, taken: Collection[str], value: str = "") -> None:
+        self.mask = expressions.lanes.mask
+        self._expressions = expressions
+        self._taken = taken
+        self._value = value
+        self._heads: list[str] = []
+
+    def place(self, place: Expr) -> str:
+        """The text of a place; each index that varies opens one more loop."""
+        match place:
+            case FieldRef(base=base, name=name):
+                assert isinstance(base.type, Struct)
+                return f"{self.place(base)}.{field_name(base.type, name)}"
+            case ComponentRef(base=base, components=(component,)):
+                return f"{self.place(base)}.{'xyzw'[component]}"
+            case IndexRef(base=base, index=index):
+                inner, position = self.place(base), self._expressions.text(index)
+                return self._item(inner, position) if self._expressions.lanes.varies(index) else f"{inner}[{position}]"
+            case _:
+                return self._expressions.place(place)
+
+    def around(self, statement: str) -> str:
+        """The loops with a statement in them."""
+        return " ".join([*self._heads, statement, *("});" for _ in self._heads)])
+
+    def _item(self, base: str, index: str) -> str:
+        item, own = self._name("item"), self._name("own")
+        captures = f"&, value = {self._value}" if self._value and not self._heads else "&"
+        self._heads.append(f"oxrt::eachItem({self.mask}, {base}, {index}, [{captures}](auto& {item}, Mask {own}) {{")
+        self.mask = own
+        return item
+
+    def _name(self, stem: str) -> str:
+        name = stem if not self._heads else f"{stem}_{len(self._heads) + 1}"
+        while name in self._taken:
+            name += "_"
+        return name
+
+
+def has_varying_index(expressions: LaneExpressions, place: Expr) -> bool:
+    """Whether lanes name different items on the way to a place of a local."""
+    node = place
+    while isinstance(node, FieldRef | ComponentRef | IndexRef):
+        if isinstance(node, IndexRef) and expressions.lanes.varies(node.index):
+            return not isinstance(_root(node), ElementRef)
+        node = node.base
+    return False
+
+
+def _root(place: Expr) -> Expr:
+    while isinstance(place, FieldRef | ComponentRef | IndexRef):
+        place = place.base
+    return place
