@@ -836,7 +836,7 @@ def get_gas_motion_step_count(handle: Traversable) -> int:
     """Number of the structure's motion keys."""
 
 def get_gas_pointer_from_handle(handle: Traversable) -> int:
-    """Address of the structure's memory."""
+    """An address that no other structure has; 0 for other handles."""
 
 def get_instance_traversable_from_ias(ias: Traversable, index: int) -> Traversable:
     """The handle of an instance; the structure must allow random instance access."""

@@ -30,22 +30,29 @@ void give(void* result, const T& value)
     std::memcpy(result, &value, sizeof(T));
 }
 
+// What the interpreter gave the address of: some functions change the hit object or tell the thread of a fault.
+template <class T>
+T& of(State state)
+{
+    return *static_cast<T*>(const_cast<void*>(state));
+}
+
 // OF: the state that the function reads. The number: how many arguments follow; their types come after the C++ name.
 #define OF0(OF, name, function) \
-    {#name, [](State state, Arguments, void* result) { give(result, function(*static_cast<const OF*>(state))); }},
+    {#name, [](State state, Arguments, void* result) { give(result, function(of<OF>(state))); }},
 #define OF1(OF, name, function, A) \
-    {#name, [](State state, Arguments a, void* result) { give(result, function(*static_cast<const OF*>(state), take<A>(a, 0))); }},
-#define OF2(OF, name, function, A, B)                                                              \
-    {#name, [](State state, Arguments a, void* result) {                                           \
-         give(result, function(*static_cast<const OF*>(state), take<A>(a, 0), take<B>(a, 1)));     \
+    {#name, [](State state, Arguments a, void* result) { give(result, function(of<OF>(state), take<A>(a, 0))); }},
+#define OF2(OF, name, function, A, B)                                         \
+    {#name, [](State state, Arguments a, void* result) {                      \
+         give(result, function(of<OF>(state), take<A>(a, 0), take<B>(a, 1))); \
      }},
-#define OF3(OF, name, function, A, B, C)                                                                             \
-    {#name, [](State state, Arguments a, void* result) {                                                             \
-         give(result, function(*static_cast<const OF*>(state), take<A>(a, 0), take<B>(a, 1), take<C>(a, 2)));        \
+#define OF3(OF, name, function, A, B, C)                                                     \
+    {#name, [](State state, Arguments a, void* result) {                                     \
+         give(result, function(of<OF>(state), take<A>(a, 0), take<B>(a, 1), take<C>(a, 2))); \
      }},
-#define OF4(OF, name, function, A, B, C, D)                                                                                        \
-    {#name, [](State state, Arguments a, void* result) {                                                                           \
-         give(result, function(*static_cast<const OF*>(state), take<A>(a, 0), take<B>(a, 1), take<C>(a, 2), take<D>(a, 3)));       \
+#define OF4(OF, name, function, A, B, C, D)                                                                 \
+    {#name, [](State state, Arguments a, void* result) {                                                    \
+         give(result, function(of<OF>(state), take<A>(a, 0), take<B>(a, 1), take<C>(a, 2), take<D>(a, 3))); \
      }},
 #define PURE1(name, function, A) {name, [](State, Arguments a, void* result) { give(result, function(take<A>(a, 0))); }},
 #define PURE2(name, function, A, B) \
@@ -66,12 +73,6 @@ void give(void* result, const T& value)
     PURE2(#name ":float2", oxrt::function, float2, float2) PURE2(#name ":float3", oxrt::function, float3, float3)             \
     PURE2(#name ":float4", oxrt::function, float4, float4) PURE2(#name ":double2", oxrt::function, double2, double2)          \
     PURE2(#name ":double3", oxrt::function, double3, double3) PURE2(#name ":double4", oxrt::function, double4, double4)
-
-// Functions that change the outgoing hit object, whose address the interpreter gives.
-HitObject& changeable(State state)
-{
-    return *static_cast<HitObject*>(const_cast<void*>(state));
-}
 
 // Makers of hits: the interpreter gives as many transforms as there can be.
 using Transforms = FixedArray<uint64_t, MAX_PATH_NODES>;
@@ -119,6 +120,7 @@ const std::unordered_map<std::string_view, OxrtDeviceFunction>& functions()
         OF1(OxrtThread, get_static_transform_from_handle, getStaticTransformFromHandle, uint64_t)
         OF2(OxrtThread, get_matrix_motion_transform_from_handle, getMatrixMotionTransformFromHandle, uint64_t, uint32_t)
         OF2(OxrtThread, get_srt_motion_transform_from_handle, getSRTMotionTransformFromHandle, uint64_t, uint32_t)
+        OF1(OxrtThread, get_gas_pointer_from_handle, getGASPointerFromHandle, uint64_t)
         OF1(OxrtThread, get_gas_motion_time_begin, getGASMotionTimeBegin, uint64_t)
         OF1(OxrtThread, get_gas_motion_time_end, getGASMotionTimeEnd, uint64_t)
         OF1(OxrtThread, get_gas_motion_step_count, getGASMotionStepCount, uint64_t)
@@ -176,7 +178,7 @@ const std::unordered_map<std::string_view, OxrtDeviceFunction>& functions()
         OF1(HitObject, hit_object_get_ribbon_normal, hitObjectGetRibbonNormal, float2)
         {"get_ribbon_normal_from_handle",
          [](State state, Arguments a, void* result) {
-             give(result, getRibbonNormalFromHandle(*static_cast<const OxrtThread*>(state), take<uint64_t>(a, 0), take<uint32_t>(a, 1),
+             give(result, getRibbonNormalFromHandle(of<OxrtThread>(state), take<uint64_t>(a, 0), take<uint32_t>(a, 1),
                                                     take<uint32_t>(a, 2), take<float>(a, 3), take<float2>(a, 4)));
          }},
         OF_HIT0(transform_list_size, TransformListSize)
@@ -199,33 +201,33 @@ const std::unordered_map<std::string_view, OxrtDeviceFunction>& functions()
         OF_HIT_TRANSFORM(normal_from_world_to_object_space, NormalFromWorldToObjectSpace)
         OF_HIT_TRANSFORM(normal_from_object_to_world_space, NormalFromObjectToWorldSpace)
 
-        {"make_nop_hit_object", [](State state, Arguments, void*) { makeNopHitObject(changeable(state)); }},
+        {"make_nop_hit_object", [](State state, Arguments, void*) { makeNopHitObject(of<HitObject>(state)); }},
         {"hit_object_set_sbt_record_index",
-         [](State state, Arguments a, void*) { hitObjectSetSbtRecordIndex(changeable(state), take<uint32_t>(a, 0)); }},
+         [](State state, Arguments a, void*) { hitObjectSetSbtRecordIndex(of<HitObject>(state), take<uint32_t>(a, 0)); }},
         {"hit_object_get_traverse_data",
-         [](State state, Arguments, void* result) { give(result, hitObjectGetTraverseData(*static_cast<const HitObject*>(state))); }},
+         [](State state, Arguments, void* result) { give(result, hitObjectGetTraverseData(of<HitObject>(state))); }},
         {"make_hit_object",
          [](State state, Arguments a, void*) {
-             makeHitObject(changeable(state), take<uint64_t>(a, 0), take<float3>(a, 1), take<float3>(a, 2), take<float>(a, 3),
+             makeHitObject(of<HitObject>(state), take<uint64_t>(a, 0), take<float3>(a, 1), take<float3>(a, 2), take<float>(a, 3),
                            take<float>(a, 4), take<uint32_t>(a, 5), take<TraverseData>(a, 6), take<Transforms>(a, 7), take<uint32_t>(a, 8));
          }},
         {"make_hit_object_of_instance",
          [](State state, Arguments a, void*) {
-             makeFromNumbers<9>(changeable(state), a, take<uint32_t>(a, 6), take<uint32_t>(a, 7), take<uint32_t>(a, 8));
+             makeFromNumbers<9>(of<HitObject>(state), a, take<uint32_t>(a, 6), take<uint32_t>(a, 7), take<uint32_t>(a, 8));
          }},
         {"make_hit_object_below_transforms",
          [](State state, Arguments a, void*) {
-             makeFromNumbers<11>(changeable(state), a, take<uint32_t>(a, 6), take<uint32_t>(a, 7), take<uint32_t>(a, 8),
+             makeFromNumbers<11>(of<HitObject>(state), a, take<uint32_t>(a, 6), take<uint32_t>(a, 7), take<uint32_t>(a, 8),
                                  take<Transforms>(a, 9), take<uint32_t>(a, 10));
          }},
         {"make_hit_object_with_record",
          [](State state, Arguments a, void*) {
-             makeFromNumbers<10>(changeable(state), a, 0u, 0u, take<uint32_t>(a, 7), take<Transforms>(a, 8), take<uint32_t>(a, 9));
-             hitObjectSetSbtRecordIndex(changeable(state), take<uint32_t>(a, 6));
+             makeFromNumbers<10>(of<HitObject>(state), a, 0u, 0u, take<uint32_t>(a, 7), take<Transforms>(a, 8), take<uint32_t>(a, 9));
+             hitObjectSetSbtRecordIndex(of<HitObject>(state), take<uint32_t>(a, 6));
          }},
         {"make_miss_hit_object",
          [](State state, Arguments a, void*) {
-             makeMissHitObject(changeable(state), take<uint32_t>(a, 0), take<float3>(a, 1), take<float3>(a, 2), take<float>(a, 3),
+             makeMissHitObject(of<HitObject>(state), take<uint32_t>(a, 0), take<float3>(a, 1), take<float3>(a, 2), take<float>(a, 3),
                                take<float>(a, 4), take<float>(a, 5), take<uint32_t>(a, 6));
          }},
 

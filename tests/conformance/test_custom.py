@@ -93,6 +93,24 @@ def test_T125_inverted_and_nan_boxes_are_never_offered(harness: Harness) -> None
     assert sorted(event["prim"] for event in calls(result, "IS")) == [0, 3]
 
 
+@pytest.mark.parametrize("columns", [8, 10])
+def test_T126_boxes_may_lie_apart_by_multiples_of_eight_bytes(harness: Harness, columns: int) -> None:
+    padded = np.full((3, columns), np.nan, np.float32)
+    padded[:, :6] = UNIT
+    padded[:, [2, 5]] -= np.float32([[0], [3], [6]])
+    accel = harness.context.accel_build([ox.BuildInputCustomPrimitives(padded[:, :6])])
+    (result,) = trace(harness, [], [ray(ABOVE, root="it")], custom(reported(1.0), mode=IGNORE), made={"it": accel})
+    assert sorted(event["prim"] for event in calls(result, "IS")) == [0, 1, 2]
+
+
+def test_T126_other_strides_are_named(harness: Harness) -> None:
+    numbers = np.zeros(100, np.float32)
+    for stride, message in ((20, "gaps inside"), (28, "28 bytes is no multiple of 8"), (-24, "gaps inside")):
+        rows = np.lib.stride_tricks.as_strided(numbers[50:], (2, 6), (stride, 4))
+        with pytest.raises(ox.InvalidValueError, match=message):
+            harness.context.accel_build([ox.BuildInputCustomPrimitives(rows)])
+
+
 def test_T127_no_report_is_a_miss(harness: Harness) -> None:
     (result,) = trace(harness, [gas(boxes(UNIT))], [ray(ABOVE)], custom())
     assert kinds(result) == ["IS", "MS"]

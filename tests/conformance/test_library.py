@@ -38,6 +38,13 @@ def test_T002_results_of_the_c_interface() -> None:
     assert lib.oxrtContextCreate(ffi.NULL, ffi.NULL) == 7001
 
 
+def test_functions_are_looked_up_when_the_library_is_opened() -> None:
+    # A destructor may run while cffi reads a declaration under its lock; looking up a function takes that lock too.
+    functions = {name for name in dir(library.lib()) if name.startswith("oxrt")}
+    assert "oxrtAccelDestroy" in functions
+    assert functions <= vars(library.lib()).keys()
+
+
 def mesh(seed: int) -> np.ndarray:
     """Triangles around a square grid of corners, each a little off."""
     random = np.random.default_rng(seed)

@@ -86,6 +86,18 @@ def test_T101_index_types_give_the_same_hits(harness: Harness, dtype: type) -> N
     assert missed(results[2])
 
 
+def test_T101_rows_of_vertices_and_indices_may_lie_apart(harness: Harness) -> None:
+    vertices = np.zeros(4, [("position", np.float32, 3), ("normal", np.float32, 3), ("material", np.uint16)])
+    vertices["position"] = [(0, 0, 0), (1, 0, 0), (0, 1, 0), (1, 1, 0)]
+    vertices["normal"] = np.nan
+    for dtype in (np.uint8, np.uint16, np.uint32):
+        indices = np.full((2, 5), 77, dtype)
+        indices[:, :3] = [(0, 1, 2), (1, 3, 2)]
+        accel = harness.context.accel_build([ox.BuildInputTriangles(vertices["position"], indices[:, :3])])
+        rays = [ray((0.25, 0.25, 1.0), root="it"), ray((0.75, 0.75, 1.0), root="it")]
+        assert [closest(result)["prim"] for result in trace(harness, [], rays, made={"it": accel})] == [0, 1]
+
+
 def test_T102_left_over_vertices_make_no_triangle(harness: Harness) -> None:
     corners = np.array([*stacked(2)[0], *stacked(2)[1], (0, 0, 5)], np.float32)
     (result,) = trace(harness, [gas(triangles(corners))], [ray((0.25, 0.25, 1.0))], [hitgroup(anyhit_mode=1)])

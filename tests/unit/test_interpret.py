@@ -148,8 +148,4 @@ def test_getters_without_a_native_function_are_known() -> None:
         for row in INTRINSICS.values()
         if row.effect is Effect.PURE and row.state is not State.NONE and not row.name.startswith(special) and not native.exists(row.name)
     ]
-    assert [name for name in missing if not any(part in name for part in NOT_YET)] == []
-
-
-NOT_YET = ("gas_pointer",)
-"""Getters that device code does not have either."""
+    assert missing == []

@@ -11,6 +11,7 @@ from typing import Any
 
 import numpy as np
 
+from optixc.enums import AABB_BUFFER_BYTE_ALIGNMENT
 from optixc.enums_scene import GeometryFlags, InstanceFlags, MotionFlags
 from optixc.errors import InvalidValueError
 from optixc.host import library
@@ -58,10 +59,11 @@ class Instance:
 
 
 def take_array(value: Any, dtype: Any, shape: tuple[int | str, ...], where: str) -> np.ndarray[Any, Any]:
-    """`value` itself if it is a C-contiguous array of `dtype` and `shape` (names stand for any size), else a clear error."""
-    wanted = (
-        f"{where} takes a C-contiguous {np.dtype(dtype).name} array of shape ({', '.join(map(str, shape))}{',' if len(shape) == 1 else ''})"
-    )
+    """`value` as a C-contiguous array of `dtype` and `shape` (names stand for any size), else a clear error.
+
+    Rows may lie apart, as with OptiX's strides: an array of padded rows, or members of structs. They are copied together then.
+    """
+    wanted = f"{where} takes a {np.dtype(dtype).name} array of shape ({', '.join(map(str, shape))}{',' if len(shape) == 1 else ''})"
     if not isinstance(value, np.ndarray):
         raise InvalidValueError(
             f"{wanted}, not {type(value).__name__}; make one with numpy.ascontiguousarray(..., numpy.{np.dtype(dtype).name})"
@@ -71,9 +73,15 @@ def take_array(value: Any, dtype: Any, shape: tuple[int | str, ...], where: str)
     fits = value.ndim == len(shape) and all(isinstance(want, str) or want == got for want, got in zip(shape, value.shape, strict=True))
     if not fits:
         raise InvalidValueError(f"{wanted}, not of shape {value.shape}")
-    if not value.flags.c_contiguous:
-        raise InvalidValueError(f"{wanted}; this one is not contiguous, use numpy.ascontiguousarray(array)")
-    return value
+    if value.flags.c_contiguous and value.flags.aligned:
+        return value
+    row_bytes = value.itemsize * int(np.prod(value.shape[1:]))
+    if not value.flags.c_contiguous and (value.strides[0] < row_bytes or not value[0].flags.c_contiguous):
+        raise InvalidValueError(
+            f"{wanted}, its rows one after the other and without gaps inside; the strides of this one are {value.strides}, use "
+            "numpy.ascontiguousarray(array)"
+        )
+    return value.copy()
 
 
 def take_index_array(value: Any, shape: tuple[int | str, ...], where: str) -> np.ndarray[Any, Any]:
@@ -223,12 +231,17 @@ class BuildInputTriangles(Records, BuildInput):
 
 @dataclass
 class BuildInputCustomPrimitives(Records, BuildInput):
-    """Custom primitives by their boxes: float32 (n, 6), min x y z then max x y z."""
+    """Custom primitives by their boxes: float32 (n, 6), min x y z then max x y z; rows that lie apart do so by multiples of 8 bytes."""
 
     aabbs: Keys
 
     def fill(self, target: Any, kept: list[Any]) -> None:
         keys = take_keys(self.aabbs, ("n", 6), "BuildInputCustomPrimitives.aabbs")
+        for array in self.aabbs if isinstance(self.aabbs, list | tuple) else [self.aabbs]:
+            if len(array) > 1 and array.strides[0] % AABB_BUFFER_BYTE_ALIGNMENT:
+                raise InvalidValueError(
+                    f"BuildInputCustomPrimitives.aabbs: a stride of {array.strides[0]} bytes is no multiple of {AABB_BUFFER_BYTE_ALIGNMENT}"
+                )
         target.type = library.lib().OXRT_BUILD_INPUT_CUSTOM_PRIMITIVES
         target.numKeys = len(keys)
         target.aabbs = fill_keys(keys, kept)
@@ -354,7 +367,7 @@ def take_handles(values: Sequence[Any] | np.ndarray) -> np.ndarray[Any, Any]:
 def take_transform(value: Any, where: str) -> np.ndarray[Any, Any]:
     """A 3x4 matrix as float32, from anything that numpy makes one of."""
     try:
-        array = np.ascontiguousarray(value, np.float32)
+        array = np.require(value, np.float32, ("A", "C"))
     except (TypeError, ValueError) as error:
         raise InvalidValueError(f"{where} takes a 3x4 matrix, not {type(value).__name__}") from error
     if array.shape not in ((3, 4), (12,)):

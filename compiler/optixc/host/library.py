@@ -34,12 +34,19 @@ def ffi() -> Any:
 
 @cache
 def lib() -> Any:
-    """The opened liboxrt; its functions are attributes."""
+    """The opened liboxrt; its functions are attributes.
+
+    All of them are looked up here. cffi does that under a lock that it also holds while it reads a declaration, and a destructor that the
+    garbage collector runs at such a moment would wait for its own thread.
+    """
     path = library_path()
     try:
-        return ffi().dlopen(str(path))
+        opened = ffi().dlopen(str(path))
     except OSError as error:
         raise LibraryNotFoundError(f"{path} cannot be loaded: {error}") from error
+    for name in list(dir(opened)):
+        getattr(opened, name)
+    return opened
 
 
 def check(result: int) -> None:

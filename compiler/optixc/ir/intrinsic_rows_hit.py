@@ -129,7 +129,7 @@ _HANDLES: tuple[Intrinsic, ...] = tuple(
         ("optixGetGASMotionTimeBegin", t.FLOAT32, "First time of the structure's motion keys."),
         ("optixGetGASMotionTimeEnd", t.FLOAT32, "Last time of the structure's motion keys."),
         ("optixGetGASMotionStepCount", t.UINT32, "Number of the structure's motion keys."),
-        ("optixGetGASPointerFromHandle", t.UINT64, "Address of the structure's memory."),
+        ("optixGetGASPointerFromHandle", t.UINT64, "An address that no other structure has; 0 for other handles."),
     )
 )
 

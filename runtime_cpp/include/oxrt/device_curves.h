@@ -99,30 +99,17 @@ OXRT_INLINE float3 getRibbonNormal(const Ray& ray, const float2& parameters) {
     return ray.geometry->widths ? ribbonNormal(*ray.geometry, ray.primitive, keyPosition(ray), parameters) : float3{};
 }
 
-/* ---- by handle: an index out of range means the nearest primitive, as in OptiX ------------------------------------------------------ */
+/* ---- by handle ---------------------------------------------------------------------------------------------------------------------- */
 
-/* The primitive that a handle names; its geometry is null if there is none of the type. */
-struct NamedPrimitive {
-    const OxrtGeometry* geometry;
-    uint32_t primitive;
-    KeyPlace at;
-};
-OXRT_INLINE NamedPrimitive findPrimitive(const OxrtThread& thread, uint64_t gas, uint32_t primitive, uint32_t sbtGasIndex, float time, uint32_t type) {
-    const OxrtGeometry* geometry = findGeometry(thread, gas, sbtGasIndex);
-    if (!geometry || geometry->primitiveType != type || geometry->primitiveCount == 0)
-        return {nullptr, 0, {0, 0.0f}};
-    const uint32_t index = primitive < geometry->primitiveIndexOffset ? 0 : primitive - geometry->primitiveIndexOffset;
-    const uint32_t last = geometry->primitiveCount - 1;
-    return {geometry, index < last ? index : last, keyPosition(*findTraversable(*thread.launch, gas), time)};
+OXRT_INLINE float4 getSphereDataFromHandle(OxrtThread& thread, uint64_t gas, uint32_t primitive, uint32_t sbtGasIndex, float time,
+                                           Place place = Place::current()) {
+    const NamedPrimitive named = findPrimitive(thread, gas, primitive, sbtGasIndex, OXRT_PRIMITIVE_SPHERE, place);
+    return named.geometry ? radiusVertex(*named.geometry, named.primitive, keyPosition(*named.view, time)) : float4{};
 }
-OXRT_INLINE float4 getSphereDataFromHandle(const OxrtThread& thread, uint64_t gas, uint32_t primitive, uint32_t sbtGasIndex, float time) {
-    const NamedPrimitive named = findPrimitive(thread, gas, primitive, sbtGasIndex, time, OXRT_PRIMITIVE_SPHERE);
-    return named.geometry ? radiusVertex(*named.geometry, named.primitive, named.at) : float4{};
-}
-OXRT_INLINE float3 getRibbonNormalFromHandle(const OxrtThread& thread, uint64_t gas, uint32_t primitive, uint32_t sbtGasIndex, float time,
-                                             const float2& parameters) {
-    const NamedPrimitive named = findPrimitive(thread, gas, primitive, sbtGasIndex, time, OXRT_PRIMITIVE_FLAT_QUADRATIC_BSPLINE);
-    return named.geometry ? ribbonNormal(*named.geometry, named.primitive, named.at, parameters) : float3{};
+OXRT_INLINE float3 getRibbonNormalFromHandle(OxrtThread& thread, uint64_t gas, uint32_t primitive, uint32_t sbtGasIndex, float time,
+                                             const float2& parameters, Place place = Place::current()) {
+    const NamedPrimitive named = findPrimitive(thread, gas, primitive, sbtGasIndex, OXRT_PRIMITIVE_FLAT_QUADRATIC_BSPLINE, place);
+    return named.geometry ? ribbonNormal(*named.geometry, named.primitive, keyPosition(*named.view, time), parameters) : float3{};
 }
 
 /* The control points of one curve type; zeros where the primitive is of another one. */
@@ -131,10 +118,11 @@ OXRT_INLINE float3 getRibbonNormalFromHandle(const OxrtThread& thread, uint64_t 
         return ray.geometry->primitiveType == OXRT_PRIMITIVE_##type ? controlPoints<count>(*ray.geometry, ray.primitive, keyPosition(ray)) \
                                                                     : ControlPoints<count>::Type{};                                   \
     }                                                                                                                                 \
-    OXRT_INLINE ControlPoints<count>::Type get##name##FromHandle(const OxrtThread& thread, uint64_t gas, uint32_t primitive,          \
-                                                                 uint32_t sbtGasIndex, float time) {                                  \
-        const NamedPrimitive named = findPrimitive(thread, gas, primitive, sbtGasIndex, time, OXRT_PRIMITIVE_##type);                 \
-        return named.geometry ? controlPoints<count>(*named.geometry, named.primitive, named.at) : ControlPoints<count>::Type{};      \
+    OXRT_INLINE ControlPoints<count>::Type get##name##FromHandle(OxrtThread& thread, uint64_t gas, uint32_t primitive,                \
+                                                                 uint32_t sbtGasIndex, float time, Place place = Place::current()) {  \
+        const NamedPrimitive named = findPrimitive(thread, gas, primitive, sbtGasIndex, OXRT_PRIMITIVE_##type, place);                \
+        return named.geometry ? controlPoints<count>(*named.geometry, named.primitive, keyPosition(*named.view, time))                \
+                              : ControlPoints<count>::Type{};                                                                         \
     }
 OXRT_CURVE_GETTER(LinearCurveVertexData, LINEAR, 2)
 OXRT_CURVE_GETTER(QuadraticBSplineVertexData, QUADRATIC_BSPLINE, 3)

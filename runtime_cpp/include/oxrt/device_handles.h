@@ -21,6 +21,18 @@ OXRT_INLINE uint32_t getTransformTypeFromHandle(const OxrtThread& thread, uint64
     }
 }
 
+/* Of validated launches: whether the structure was built for questions by handle, and holds what is asked for. */
+__attribute__((noinline, cold, unused)) static void checkAccess(OxrtThread& thread, const OxrtTraversableView& view, uint32_t flag, uint32_t index,
+                                                                uint32_t count, Place place) {
+    if (!(view.buildFlags & flag))
+        fault(thread, OXRT_FAULT_DATA_ACCESS,
+              flag == OXRT_BUILD_ALLOWS_VERTEX_ACCESS ? "the structure was built without BuildFlags.ALLOW_RANDOM_VERTEX_ACCESS"
+                                                      : "the structure was built without BuildFlags.ALLOW_RANDOM_INSTANCE_ACCESS",
+              place);
+    else if (index >= count)
+        faultWithValues(thread, OXRT_FAULT_DATA_ACCESS, "index \1 is not below the number of primitives or instances, \1", place, index, count);
+}
+
 /* The instance that the handle names, null if it names something else. */
 OXRT_INLINE const OxrtInstanceView* findInstance(const OxrtThread& thread, uint64_t handle) {
     const OxrtTraversableView* view = findTraversable(*thread.launch, handle);
@@ -42,9 +54,13 @@ OXRT_INLINE float3x4 getInstanceInverseTransformFromHandle(const OxrtThread& thr
     const OxrtInstanceView* instance = findInstance(thread, handle);
     return instance ? matrixFrom(instance->worldToObject) : float3x4{};
 }
-OXRT_INLINE uint64_t getInstanceTraversableFromIAS(const OxrtThread& thread, uint64_t handle, uint32_t index) {
+OXRT_INLINE uint64_t getInstanceTraversableFromIAS(OxrtThread& thread, uint64_t handle, uint32_t index, Place place = Place::current()) {
     const OxrtTraversableView* view = findTraversable(*thread.launch, handle);
-    return view && view->type == OXRT_TRAVERSABLE_IAS && index < view->instanceCount ? view->instances[index].handle : 0;
+    if (!view || view->type != OXRT_TRAVERSABLE_IAS)
+        return 0;
+    if (thread.launch->validation)
+        checkAccess(thread, *view, OXRT_BUILD_ALLOWS_INSTANCE_ACCESS, index, view->instanceCount, place);
+    return index < view->instanceCount ? view->instances[index].handle : 0;
 }
 
 /* ---- transforms ------------------------------------------------------------------------------------------------------------------- */
@@ -81,6 +97,12 @@ OXRT_INLINE MotionTransformData<float4x4> getSRTMotionTransformFromHandle(const 
 
 /* ---- geometry --------------------------------------------------------------------------------------------------------------------- */
 
+/* What the structure is kept under in memory, 0 of other handles: no two that are alive have the same. */
+OXRT_INLINE uint64_t getGASPointerFromHandle(const OxrtThread& thread, uint64_t gas) {
+    const OxrtTraversableView* view = findTraversable(*thread.launch, gas);
+    return view && view->type == OXRT_TRAVERSABLE_GAS ? reinterpret_cast<uint64_t>(view) : 0;
+}
+
 /* The motion options of the build; a static structure has none: zeros. */
 OXRT_INLINE float getGASMotionTimeBegin(const OxrtThread& thread, uint64_t gas) {
     const OxrtTraversableView* view = findTraversable(*thread.launch, gas);
@@ -95,28 +117,42 @@ OXRT_INLINE uint32_t getGASMotionStepCount(const OxrtThread& thread, uint64_t ga
     return view && view->keyCount > 1 ? view->keyCount : 0;
 }
 
-/* The build input that holds an SBT GAS index, null if there is none. */
-OXRT_INLINE const OxrtGeometry* findGeometry(const OxrtThread& thread, uint64_t gas, uint32_t sbtGasIndex) {
-    const OxrtTraversableView* view = findTraversable(*thread.launch, gas);
-    if (!view || view->type != OXRT_TRAVERSABLE_GAS)
-        return nullptr;
-    for (uint32_t i = 0; i < view->geometryCount; ++i) {
-        const OxrtGeometry& geometry = view->geometries[i];
+/* The build input of a structure that holds an SBT GAS index, null if there is none. */
+OXRT_INLINE const OxrtGeometry* findGeometry(const OxrtTraversableView& view, uint32_t sbtGasIndex) {
+    for (uint32_t i = 0; i < view.geometryCount; ++i) {
+        const OxrtGeometry& geometry = view.geometries[i];
         if (sbtGasIndex >= geometry.recordBase && sbtGasIndex - geometry.recordBase < geometry.recordCount)
             return &geometry;
     }
     return nullptr;
 }
 
-/* Corners by handle. An index out of range means the nearest primitive, as in OptiX. */
-OXRT_INLINE TriangleVertices getTriangleVertexDataFromHandle(const OxrtThread& thread, uint64_t gas, uint32_t primitive, uint32_t sbtGasIndex,
-                                                             float time) {
-    const OxrtGeometry* geometry = findGeometry(thread, gas, sbtGasIndex);
-    if (!geometry || geometry->primitiveType != OXRT_PRIMITIVE_TRIANGLE || geometry->primitiveCount == 0)
-        return makeTuple(float3{}, float3{}, float3{});
-    const uint32_t index = primitive < geometry->primitiveIndexOffset ? 0 : primitive - geometry->primitiveIndexOffset;
-    return triangleVerticesAt(*findTraversable(*thread.launch, gas), *geometry,
-                              index < geometry->primitiveCount ? index : geometry->primitiveCount - 1, time);
+/* The primitive that a handle names; its geometry is null if there is none of the type. An index out of range means the nearest primitive,
+   as in OptiX. */
+struct NamedPrimitive {
+    const OxrtTraversableView* view;
+    const OxrtGeometry* geometry;
+    uint32_t primitive;
+};
+OXRT_INLINE NamedPrimitive findPrimitive(OxrtThread& thread, uint64_t gas, uint32_t primitive, uint32_t sbtGasIndex, uint32_t type, Place place) {
+    const OxrtTraversableView* view = findTraversable(*thread.launch, gas);
+    if (!view || view->type != OXRT_TRAVERSABLE_GAS)
+        return {nullptr, nullptr, 0};
+    const OxrtGeometry* geometry = findGeometry(*view, sbtGasIndex);
+    if (!geometry || geometry->primitiveType != type || geometry->primitiveCount == 0)
+        return {view, nullptr, 0};
+    const uint32_t index = primitive - geometry->primitiveIndexOffset;
+    if (thread.launch->validation)
+        checkAccess(thread, *view, OXRT_BUILD_ALLOWS_VERTEX_ACCESS, index, geometry->primitiveCount, place);
+    const uint32_t last = geometry->primitiveCount - 1;
+    return {view, geometry, primitive < geometry->primitiveIndexOffset ? 0 : index < last ? index : last};
+}
+
+/* The true corners, of triangles without area too (recorded: 13_degenerate). */
+OXRT_INLINE TriangleVertices getTriangleVertexDataFromHandle(OxrtThread& thread, uint64_t gas, uint32_t primitive, uint32_t sbtGasIndex, float time,
+                                                             Place place = Place::current()) {
+    const NamedPrimitive named = findPrimitive(thread, gas, primitive, sbtGasIndex, OXRT_PRIMITIVE_TRIANGLE, place);
+    return named.geometry ? triangleVerticesAt(*named.view, *named.geometry, named.primitive, time) : makeTuple(float3{}, float3{}, float3{});
 }
 
 }  // namespace OXRT_ISA

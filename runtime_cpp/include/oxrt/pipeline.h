@@ -98,6 +98,9 @@ enum { OXRT_SCENE_HAS_CUSTOM = 1, OXRT_SCENE_HAS_MICROMAPS = 2, OXRT_SCENE_HAS_G
        OXRT_SCENE_HAS_MASKS = 16, OXRT_SCENE_HAS_CURVES = 32, OXRT_SCENE_HAS_SPHERES = 64, OXRT_SCENE_HAS_MOTION = 128,
        OXRT_SCENE_MULTI_LEVEL = 256 };
 
+/* What validated launches look for in buildFlags before they answer questions by handle. */
+enum { OXRT_BUILD_ALLOWS_VERTEX_ACCESS = 16, OXRT_BUILD_ALLOWS_INSTANCE_ACCESS = 32 };
+
 typedef struct OxrtTraversableView {
     void* scene;     /* RTCScene, NULL where nothing can be hit; of transforms that of the child, which is in another space */
     uint32_t type;
