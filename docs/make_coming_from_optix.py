@@ -71,7 +71,7 @@ HOST: tuple[tuple[str, str, str, str], ...] = (
         "optixUtilDenoiserSplitImage, optixUtilDenoiserInvokeTiled, optixUtilGetPixelStride",
         "",
         ABSENT,
-        "use a denoiser library on the image",
+        "rays are traced here, images are not filtered: give the image, albedo and normals (numpy arrays) to a denoiser library",
     ),
 )
 
