@@ -82,14 +82,14 @@ class _Ray:
 
 def scene_candidates(scene: list[dict[str, Any]], given: dict[str, Any]) -> list[Hit]:
     """Every triangle and sphere that the ray meets, nearest first; culling and any-hit states are not looked at."""
-    found = [hit for _, _, _, hits in _leaves(scene, given) for hit in hits]
+    found = [hit for _, _, _, hits in leaves(scene, given) for hit in hits]
     return sorted(found, key=lambda hit: hit.t)
 
 
 def scene_boxes(scene: list[dict[str, Any]], given: dict[str, Any]) -> list[Box]:
     """Every custom primitive whose box the ray meets."""
     found = []
-    for item, path, ray, _ in _leaves(scene, given):
+    for item, path, ray, _ in leaves(scene, given):
         if item["type"] == "custom":
             found.extend(_boxes(item, path, ray))
     return found
@@ -98,13 +98,13 @@ def scene_boxes(scene: list[dict[str, Any]], given: dict[str, Any]) -> list[Box]
 def edges_passed(scene: list[dict[str, Any]], given: dict[str, Any], tolerance: float = EDGE) -> dict[int, float]:
     """The triangles of whose edges or vertices the ray passes one within a barycentric tolerance, and where it does."""
     found: dict[int, float] = {}
-    for item, _, ray, _ in _leaves(scene, given):
+    for item, _, ray, _ in leaves(scene, given):
         if item["type"] == "triangles":
             with np.errstate(all="ignore"):
                 u, v, t, _ = _barycentrics(_corners(item), ray)
                 least = np.minimum(np.minimum(u, v), 1.0 - u - v)
             on_edge = (np.abs(least) < tolerance) & (t > ray.tmin) & (t < ray.tmax)
-            found.update({_primitive(item, i): float(t[i]) for i in np.flatnonzero(on_edge)})
+            found.update({primitive(item, i): float(t[i]) for i in np.flatnonzero(on_edge)})
     return found
 
 
@@ -130,7 +130,7 @@ def anyhit_enabled(geometry_flags: int, instance_flags: int, ray_flags: int) -> 
     return enabled
 
 
-def _leaves(scene: list[dict[str, Any]], given: dict[str, Any]) -> Iterator[tuple[dict[str, Any], Path, _Ray, list[Hit]]]:
+def leaves(scene: list[dict[str, Any]], given: dict[str, Any]) -> Iterator[tuple[dict[str, Any], Path, _Ray, list[Hit]]]:
     """Every build input under the root with the ray in its space and the built-in hits."""
     nodes = {node["name"]: node for node in scene}
     mask = int(given["mask"]) & 0xFF
@@ -284,8 +284,8 @@ def _triangle_hits(item: dict[str, Any], path: Path, ray: _Ray) -> list[Hit]:
     u, v, t, determinant = _barycentrics(_corners(item), ray)
     inside = (u >= 0.0) & (v >= 0.0) & (u + v <= 1.0) & (t > ray.tmin) & (t < ray.tmax)
     front = (determinant > 0.0) != bool(path.flags & INSTANCE_FLIP)
-    return [Hit(float(t[i]), _primitive(item, i), _record(item, i), FRONT_FACE if front[i] else BACK_FACE, float(u[i]), float(v[i]),
-                _flags(item, i), path) for i in np.flatnonzero(inside)]
+    return [Hit(float(t[i]), primitive(item, i), record(item, i), FRONT_FACE if front[i] else BACK_FACE, float(u[i]), float(v[i]),
+                flags(item, i), path) for i in np.flatnonzero(inside)]
 
 
 def _sphere_hits(item: dict[str, Any], path: Path, ray: _Ray) -> list[Hit]:
@@ -299,7 +299,7 @@ def _sphere_hits(item: dict[str, Any], path: Path, ray: _Ray) -> list[Hit]:
     # without the difference of two large numbers where the ray begins near a large sphere
     t = (np.sum(to_center * to_center, axis=1) - radii * radii) / (np.sqrt(root) - b)
     inside = (root > 0.0) & (radii > 0.0) & (t > ray.tmin) & (t < ray.tmax)
-    return [Hit(float(t[i]), _primitive(item, i), _record(item, i), SPHERE, 0.0, 0.0, _flags(item, i), path)
+    return [Hit(float(t[i]), primitive(item, i), record(item, i), SPHERE, 0.0, 0.0, flags(item, i), path)
             for i in np.flatnonzero(inside)]
 
 
@@ -311,10 +311,10 @@ def _boxes(item: dict[str, Any], path: Path, ray: _Ray) -> list[Box]:
         enter = np.nanmax(np.minimum(near, far), axis=1)
         leave = np.nanmin(np.maximum(near, far), axis=1)
     met = (enter <= leave) & (leave >= ray.tmin) & (enter <= ray.tmax) & np.all(boxes[:, :3] <= boxes[:, 3:], axis=1)
-    return [Box(float(enter[i]), _primitive(item, i), _record(item, i), _flags(item, i), path) for i in np.flatnonzero(met)]
+    return [Box(float(enter[i]), primitive(item, i), record(item, i), flags(item, i), path) for i in np.flatnonzero(met)]
 
 
-def _primitive(item: dict[str, Any], index: int) -> int:
+def primitive(item: dict[str, Any], index: int) -> int:
     return int(index) + int(item.get("primitiveIndexOffset", 0))
 
 
@@ -322,11 +322,11 @@ def _local_record(item: dict[str, Any], index: int) -> int:
     return min(int(item["sbtIndexOffset"][index]), item["numSbtRecords"] - 1) if "sbtIndexOffset" in item else 0
 
 
-def _record(item: dict[str, Any], index: int) -> int:
+def record(item: dict[str, Any], index: int) -> int:
     return int(item["firstRecord"]) + _local_record(item, index)
 
 
-def _flags(item: dict[str, Any], index: int) -> int:
+def flags(item: dict[str, Any], index: int) -> int:
     return int(item["flags"][_local_record(item, index)])
 
 

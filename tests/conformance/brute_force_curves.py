@@ -91,7 +91,7 @@ class Segment:
 def segments(scene: list[dict[str, Any]], given: dict[str, Any], primitive: int) -> list[Segment]:
     """The curve segments with this primitive index under the root."""
     found = []
-    for item, _, ray, _ in brute_force._leaves(scene, given):
+    for item, _, ray, _ in brute_force.leaves(scene, given):
         index = primitive - int(item.get("primitiveIndexOffset", 0))
         if item["type"] == "curves" and 0 <= index < len(item["indices"]):
             kind = int(item["curveType"], 16)
