@@ -65,7 +65,7 @@ def made() -> Made:
 
 Row = tuple[str, str, Callable[[Made], Any], int, str]
 PIPELINE_ROWS: list[Row] = [
-    ("optixDeviceContextCreate", "no threads", lambda m: ox.DeviceContext(threads=0), INVALID, "None or at least 1"),
+    ("optixDeviceContextCreate", "no threads", lambda m: ox.DeviceContext(threads=0), INVALID, "threads is None or at least 1"),
     ("optixDeviceContextCreate", "cache in a number", lambda m: ox.DeviceContext(cache_dir=3), INVALID, "takes a folder"),
     ("optixDeviceContextGetProperty", "no property", lambda m: m.context.get_property(7), INVALID, "take one of ox.DeviceProperty"),
     ("optixDeviceContextSetLogCallback", "no function", lambda m: m.context.set_log_callback(3), INVALID, "callable or None"),

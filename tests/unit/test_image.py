@@ -105,3 +105,9 @@ def test_a_failed_write_keeps_the_old_file(tmp_path: Path) -> None:
     with pytest.raises(FileIoError):
         write_image(folder, np.zeros((2, 2, 3), np.uint8))
     assert list(tmp_path.iterdir()) == [folder]
+
+
+@pytest.mark.parametrize("exposure", [float("nan"), 1e9, -121, "x", None])
+def test_an_exposure_that_no_picture_has(tmp_path: Path, exposure: object) -> None:
+    with pytest.raises(InvalidValueError, match="exposure is a number of stops"):
+        write_image(tmp_path / "x.png", np.zeros((2, 2, 3)), exposure)  # type: ignore[arg-type]

@@ -14,7 +14,7 @@ from optixc.host import library
 from optixc.host.context import Context
 from optixc.host.inputs import BuildInput, MotionOptions, pack_inputs, take_handle
 from optixc.host.sbt_reach import Parts, below, parts_of
-from optixc.host.whole_numbers import take_member
+from optixc.host.whole_numbers import WORD_LIMIT, take_member, take_whole
 
 
 class TraversableHandle(int):
@@ -38,15 +38,14 @@ class Accel:
     def __init__(self, context: Context, inputs: Sequence[BuildInput], build_flags: int, motion_options: MotionOptions | None) -> None:
         self._accel: Any = None
         self._context = context
-        if not isinstance(build_flags, int) or isinstance(build_flags, bool) or not 0 <= build_flags < 1 << 32:
-            raise InvalidValueError(f"build_flags combines BuildFlags, it is not {build_flags!r}")
+        build_flags = take_whole(build_flags, 0, WORD_LIMIT - 1, "build_flags combines BuildFlags: it")
         if motion_options is not None and not isinstance(motion_options, MotionOptions):
             raise InvalidValueError(f"motion_options takes a MotionOptions, not {type(motion_options).__name__}")
-        self._build_flags = int(build_flags)
+        self._build_flags = build_flags
         self._motion = motion_options
         self._inputs: tuple[BuildInput, ...] = tuple(inputs) if isinstance(inputs, Sequence) else ()
         options = library.ffi().new("OxrtAccelBuildOptions*")
-        options.buildFlags = int(build_flags)
+        options.buildFlags = build_flags
         if motion_options is not None:
             motion_options.fill(options.motion)
         packed = pack_inputs(inputs)

@@ -40,7 +40,7 @@ class Context:
         log_level: int = LOG_PRINT,
     ) -> None:
         self._handle: Any = None
-        count = 0 if threads is None else take_whole(threads, 1, WORD_LIMIT - 1, "threads is None or")
+        count = 0 if threads is None else take_whole(threads, 1, WORD_LIMIT - 1, "threads is None or at least 1: it")
         if log_callback is not None and not callable(log_callback):
             raise InvalidValueError(f"log_callback must be callable, not {log_callback!r}")
         if isinstance(log_level, bool) or log_level not in range(5):

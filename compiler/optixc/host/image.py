@@ -20,6 +20,7 @@ from optixc.errors import FileIoError, InvalidFileFormatError, InvalidValueError
 
 _INTEGER_FORMATS = frozenset({".png", ".jpg", ".jpeg", ".bmp", ".tga"})
 _FLOAT_FORMATS = frozenset({".exr", ".hdr", ".tif", ".tiff", ".pfm"})
+_MOST_STOPS = 120  # 2 ** 120 still is a float32
 _CHANNELS = {".hdr": (3,), ".pfm": (1, 3), ".jpg": (1, 3), ".jpeg": (1, 3), ".bmp": (1, 3, 4), ".tga": (1, 3, 4)}
 
 
@@ -70,6 +71,8 @@ def write_image(path: str | os.PathLike[str], array: npt.ArrayLike, exposure: fl
         known = " ".join(sorted(_INTEGER_FORMATS | _FLOAT_FORMATS))
         raise InvalidFileFormatError(f"write_image: {target.name}: the extension must be one of {known}")
     pixels = _checked(array)
+    if not isinstance(exposure, int | float | np.number) or not abs(exposure) <= _MOST_STOPS:
+        raise InvalidValueError(f"write_image: exposure is a number of stops, -{_MOST_STOPS} to {_MOST_STOPS}, not {exposure!r}")
     if not np.issubdtype(pixels.dtype, np.floating) and exposure != 0.0:
         raise InvalidValueError(f"write_image: exposure works on linear floats, not on an array of {pixels.dtype}")
     if extension in _INTEGER_FORMATS:

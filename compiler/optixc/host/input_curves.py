@@ -5,6 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import Any, ClassVar
 
+import numpy as np
+
 from optixc.enums_scene import CurveEndcapFlags, PrimitiveType
 from optixc.errors import InvalidValueError
 from optixc.host import library
@@ -33,9 +35,16 @@ def _check_key_counts(where: str, **keys: list[Any]) -> None:
         raise InvalidValueError(f"{where}: the numbers of motion keys differ: {', '.join(f'{n} of {name}' for name, n in counts.items())}")
 
 
+def _take_radii(value: Any, keys: int, count: int, where: str) -> list[np.ndarray[Any, Any]]:
+    """The radii of each motion key; a number stands for `count` of them at every key."""
+    if isinstance(value, int | float | np.integer | np.floating) and not isinstance(value, bool):
+        return [np.full(count, value, np.float32)] * keys
+    return take_keys(value, ("n",), f"{where}.radii")
+
+
 @dataclass
 class BuildInputSpheres(Records, BuildInput):
-    """Spheres: float32 centers (n, 3) and radii (n,), or one radius (1,) for all.
+    """Spheres: float32 centers (n, 3) and radii (n,), or one radius for all, a number or (1,).
 
     A ray that starts inside hits nothing. Negative radii act as their absolute value; zero and NaN are never hit.
     """
@@ -46,7 +55,7 @@ class BuildInputSpheres(Records, BuildInput):
     def fill(self, target: Any, kept: list[Any]) -> None:
         where = "BuildInputSpheres"
         centers = take_keys(self.centers, ("n", 3), f"{where}.centers")
-        radii = take_keys(self.radii, ("n",), f"{where}.radii")
+        radii = _take_radii(self.radii, len(centers), 1, where)
         _check_key_counts(where, centers=centers, radii=radii)
         count = len(centers[0])
         if len(radii[0]) not in (1, count):
@@ -62,7 +71,7 @@ class BuildInputSpheres(Records, BuildInput):
 
 @dataclass
 class BuildInputCurves(BuildInput):
-    """Curves of one basis: float32 vertices (n, 3), radii (n,), and for each segment the index of its first control point.
+    """Curves of one basis: float32 vertices (n, 3), radii (n,) or a number, and for each segment the index of its first control point.
 
     `normals` (n, 3) orient ribbons; without them a ribbon lies across the bends of its curve. Linear curves have spherical ends always;
     `endcap_flags` ON closes the others by discs at both ends of every strand. Curves have one SBT record and one flag word.
@@ -83,9 +92,9 @@ class BuildInputCurves(BuildInput):
         where = "BuildInputCurves"
         kind = PrimitiveType(take_member(self.curve_type, CURVE_CONTROL_POINTS, f"{where}: curve_type"))
         vertices = take_keys(self.vertices, ("n", 3), f"{where}.vertices")
-        radii = take_keys(self.radii, ("n",), f"{where}.radii")
-        _check_key_counts(where, vertices=vertices, radii=radii)
         count = len(vertices[0])
+        radii = _take_radii(self.radii, len(vertices), count, where)
+        _check_key_counts(where, vertices=vertices, radii=radii)
         if len(radii[0]) != count:
             raise InvalidValueError(f"{where}: {len(radii[0])} radii for {count} vertices; curves need one for each")
         indices = take_index_array(self.indices, ("m",), f"{where}.indices")

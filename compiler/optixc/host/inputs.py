@@ -1,6 +1,7 @@
 """Build inputs: arrays of the caller, checked for type, shape and order, as the runtime reads them.
 
-Arrays are copied by the build; they may change or go afterwards. A list of arrays in place of one array gives motion keys.
+Arrays are copied by the build; they may change or go afterwards. A list of arrays in place of one array gives motion keys, as does one
+array with an axis more in front.
 """
 
 from __future__ import annotations
@@ -46,9 +47,10 @@ class MotionOptions:
         target.timeBegin, target.timeEnd = times
 
 
-@dataclass(frozen=True)
+@dataclass(eq=False)
 class Instance:
-    """One instance: a traversable (accel, handle or transform) under a 3x4 object-to-world transform."""
+    """One instance: a traversable (accel, handle or transform) under a 3x4 object-to-world transform. A build reads its members, which may
+    change for the next one."""
 
     traversable: Any
     transform: Any = None
@@ -139,8 +141,9 @@ def pointer_to(array: np.ndarray[Any, Any], c_type: str, kept: list[Any]) -> Any
 
 
 def take_keys(value: Keys, shape: tuple[int | str, ...], where: str) -> list[np.ndarray[Any, Any]]:
-    """The arrays of the motion keys, all of one shape; one array is one key."""
-    arrays = list(value) if isinstance(value, list | tuple) else [value]
+    """The arrays of the motion keys, all of one shape; one array is one key, one with an axis more holds all keys."""
+    is_stack = isinstance(value, np.ndarray) and value.ndim == len(shape) + 1
+    arrays = list(value) if is_stack or isinstance(value, list | tuple) else [value]
     if not arrays:
         raise InvalidValueError(f"{where} is an empty list; motion needs one array per key")
     taken = [take_array(array, np.float32, shape, where if len(arrays) == 1 else f"{where}[{key}]") for key, array in enumerate(arrays)]
@@ -183,7 +186,7 @@ class Records:
         target.flags = pointer_to(words, "uint32_t*", kept)
         target.primitiveIndexOffset = offset
         if self.sbt_index_offsets is not None:
-            offsets = take_index_array(self.sbt_index_offsets, ("n",), f"{where}.sbt_index_offsets")
+            offsets = take_index_array(_as_words(self.sbt_index_offsets), ("n",), f"{where}.sbt_index_offsets")
             if offsets.size != primitives:
                 raise InvalidValueError(f"{where}: {offsets.size} sbt_index_offsets for {primitives} primitives")
             # an offset past the last record means the last record, as in OptiX: the runtime clamps
@@ -253,7 +256,8 @@ class BuildInputCustomPrimitives(Records, BuildInput):
 class BuildInputInstances(BuildInput):
     """Instances: a list of `Instance`, or a list of traversables with arrays of their members for many at once.
 
-    The members are an array of n or one value for all; `transforms` is float32 (n, 3, 4). A uint64 array of handles is the quickest list.
+    The members are an array of n or one value for all; `transforms` is (n, 3, 4), best float32. A uint64 array of handles is the
+    quickest list.
     """
 
     instances: Sequence[Any] | np.ndarray
@@ -321,10 +325,7 @@ class BuildInputInstances(BuildInput):
         if self.transforms is None:
             table["transform"] = _IDENTITY
         else:
-            transforms = take_array(self.transforms, np.float32, ("n", 3, 4), "BuildInputInstances.transforms")
-            if len(transforms) != count:
-                raise InvalidValueError(f"{len(transforms)} transforms for {count} instances")
-            table["transform"] = transforms.reshape(count, 12)
+            table["transform"] = _take_transforms(self.transforms, count)
         members = (
             ("instance_id", self.instance_ids, 0),
             ("sbt_offset", self.sbt_offsets, 0),
@@ -362,6 +363,28 @@ def take_handles(values: Sequence[Any] | np.ndarray) -> np.ndarray[Any, Any]:
         if id(one) not in known:
             known[id(one)] = take_handle(one, f"instance {number}")
     return np.fromiter(map(known.__getitem__, map(id, objects)), np.uint64, len(objects))
+
+
+def _take_transforms(value: Any, count: int) -> np.ndarray[Any, Any]:
+    """Matrices of shape (count, 3, 4) as float32 rows of 12, from anything that numpy makes them of."""
+    try:
+        array = np.asarray(value, np.float32)
+    except (TypeError, ValueError) as error:
+        raise InvalidValueError(f"BuildInputInstances.transforms takes an array of shape (n, 3, 4), not {type(value).__name__}") from error
+    if array.ndim < 1 or array.shape[1:] not in ((3, 4), (12,)):
+        raise InvalidValueError(f"BuildInputInstances.transforms takes an array of shape (n, 3, 4), not {array.shape}")
+    if len(array) != count:
+        raise InvalidValueError(f"{len(array)} transforms for {count} instances")
+    return array.reshape(count, 12)
+
+
+def _as_words(value: Any) -> Any:
+    """A list of whole numbers, or an array of a wider type whose numbers are of 32 bits, as uint32; anything else as it is."""
+    is_list = isinstance(value, list | tuple) and all(isinstance(one, int | np.integer) for one in value)
+    numbers = np.array(value) if is_list and value else value
+    if isinstance(numbers, np.ndarray) and numbers.dtype in (np.int64, np.uint64) and numbers.size:
+        return numbers.astype(np.uint32) if numbers.min() >= 0 and numbers.max() < WORD_LIMIT else numbers
+    return numbers
 
 
 def take_transform(value: Any, where: str) -> np.ndarray[Any, Any]:

@@ -23,7 +23,7 @@ _SNORM_SCALE = np.float32(32767)
 
 def to_float3(vertices: Any, vertex_format: Any, where: str) -> Any:
     """The vertices with every array (one, or one per motion key) of another format than FLOAT3 converted; others are left to the check."""
-    if isinstance(vertices, list | tuple):
+    if isinstance(vertices, list | tuple) or (isinstance(vertices, np.ndarray) and vertices.ndim == 3):
         return [_convert(key, vertex_format, where) for key in vertices]
     return _convert(vertices, vertex_format, where)
 
