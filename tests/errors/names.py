@@ -30,7 +30,7 @@ def __raygen__a():
     e = conditional  # E[OX310]: bound by a statement of host code (`if`)
     f = twice  # E[OX310]: bound 2 times
     g = undefined_thing  # E[OX301]: `undefined_thing` is not defined
-    h = ox.normalise(1)  # E[OX301]: `ox` has no `normalise`
+    h = ox.normalise(1)  # E[OX301]: did you mean `ox.normalize`?
     i = math.sin(1.0)  # E[OX310]: write `ox.sin`
     j = floor(1.0)  # E[OX310]: write `ox.floor`
     k = ox.RayFlags.NOTHING  # E[OX311]: has no member `NOTHING`

@@ -23,6 +23,7 @@ from optixc.frontend.checked import (
 )
 from optixc.frontend.context import Context, describe
 from optixc.frontend.environment import Bound, Conflict, Partial
+from optixc.frontend.near_names import suggestion
 from optixc.frontend.places import is_payload_parameter
 from optixc.frontend.refusals import refuse_expression
 from optixc.frontend.resolve_static import local_names, static_symbol
@@ -44,6 +45,7 @@ from optixc.frontend.symbols import (
 from optixc.frontend.weak import INVALID, WEAK_FLOAT, WEAK_INT, Invalid, is_integer, tuple_of, widened
 from optixc.ir import types as t
 
+_TABLE = "docs/language/device-functions.md lists all that there are"
 _COMPONENTS = {"x": 0, "y": 1, "z": 2, "w": 3, "r": 0, "g": 1, "b": 2, "a": 3}
 _MAX_LITERAL_BITS = 64
 
@@ -115,7 +117,7 @@ def _check_name(c: Context, node: ast.Name) -> ExprInfo:
     symbol = static_symbol(c, node)
     if symbol is None:
         near = difflib.get_close_matches(node.id, [*local_names(c), *c.scope.definitions], 1)
-        note = f"did you mean `{near[0]}`?" if near else "nothing defines it"
+        note = f"did you mean `{near[0]}`?" if near else suggestion(node.id) or "nothing defines it"
         return c.error("OX301", node, f"`{node.id}` is not defined", note)
     return symbol_value(c, node, symbol)
 
@@ -187,7 +189,7 @@ def _unknown_member(c: Context, node: ast.Attribute, base: Symbol) -> ExprInfo:
         return c.error("OX311", node, f"`{text}` has no member `{node.attr}`", f"did you mean `{near[0]}`?" if near else "")
     if isinstance(base, PythonName) and attribute_of(base, node.attr) is None:
         return c.error("OX310", node, f"`{ast.unparse(node)}` cannot be used in a shader", "only math.pi and other constants can")
-    return c.error("OX301", node, f"`{text}` has no `{node.attr}` for shaders", "see the table of device functions")
+    return c.error("OX301", node, f"`{text}` has no `{node.attr}` for shaders", suggestion(node.attr) or _TABLE)
 
 
 def _check_field(c: Context, node: ast.Attribute, base: ExprInfo, struct: t.Struct) -> ExprInfo:

@@ -1,0 +1,24 @@
+import optixc as ox
+
+
+@ox.program
+def __raygen__a():
+    a = ox.optixGetLaunchIndex()  # E[OX301]: did you mean `ox.get_launch_index`?
+    b = ox.getLaunchDimensions()  # E[OX301]: did you mean `ox.get_launch_dimensions`?
+    c = optixGetLaunchIndex()  # E[OX301]: did you mean `ox.get_launch_index`?
+    d = ox.get_sbt_data_pointer()  # E[OX301]: `ox.get_sbt_data(Struct)` is the record's data
+    e = ox.optixGetSbtDataPointer()  # E[OX301]: `ox.get_sbt_data(Struct)` is the record's data
+    f = ox.make_float3(1.0, 2.0, 3.0)  # E[OX301]: did you mean `ox.float3`?
+    g = sqrtf(2.0)  # E[OX301]: did you mean `ox.sqrt`?
+    h = fmaxf(1.0, 2.0)  # E[OX301]: did you mean `ox.max`?
+    i = ox.__float_as_uint(1.0)  # E[OX301]: did you mean `ox.float_as_uint`?
+    j = normalize(ox.float3(1.0))  # E[OX301]: did you mean `ox.normalize`?
+    k = ox.get_launch_dimension()  # E[OX301]: did you mean `ox.get_launch_dimensions`?
+    l = ox.atomicAdd(1)  # E[OX301]: did you mean `ox.atomic_add`?
+    m = ox.get_weather()  # E[OX301]: docs/language/device-functions.md lists all
+    n = weather  # E[OX301]: nothing defines it
+
+
+@ox.program
+def __exception__a():
+    a = ox.get_exception_line_info()  # E[OX301]: the error of a failed launch tells program, path and line
