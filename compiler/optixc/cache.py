@@ -37,7 +37,7 @@ def default_folder() -> Path:
     """OPTIXC_CACHE_DIR, else `optixc` in the user's cache folder."""
     chosen = os.environ.get("OPTIXC_CACHE_DIR")
     if chosen:
-        return Path(chosen)
+        return Path(os.path.expanduser(chosen))
     root = os.environ.get("XDG_CACHE_HOME")
     return Path(root) / "optixc" if root else Path(os.path.expanduser("~")) / ".cache" / "optixc"
 

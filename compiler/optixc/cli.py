@@ -167,6 +167,8 @@ def _print_pass(wanted: str | None, name: str, pipeline: nodes.Pipeline) -> None
 
 def _write(chosen: argparse.Namespace, unit: driver.Unit, names: list[str], options: CompileOptions, store: Cache) -> None:
     stem = _stem(chosen)
+    # Whether the cache holds the result must not decide how the command ends.
+    toolchain.find_compiler(store.memory)
     built = driver.build([unit], names, options, store)
     emitted = driver.emit([unit.result.module], names, driver.variants(options)[-1])
     outputs = [stem.with_name(stem.name + suffix) for suffix in (".so", ".h", ".json")]

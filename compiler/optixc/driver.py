@@ -10,6 +10,7 @@ import os
 import time
 from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from functools import cache
 from pathlib import Path
@@ -122,9 +123,29 @@ def open_functions(functions: Sequence[Any]) -> Unit:
 
 
 def build(units: Sequence[Unit], names: Sequence[str], options: CompileOptions, store: Cache) -> Built:
-    """Compiles the named programs of the units into one pipeline, or finds it in the cache."""
+    """Compiles the named programs of the units into one pipeline, or finds it in the cache.
+
+    Where no compiler is installed, what the cache holds from one that was there still serves.
+    """
+    try:
+        return _build(units, names, options, store, toolchain.find_compiler(store.memory))
+    except toolchain.NoCompilerError:
+        for compiler in toolchain.remembered_compilers(store.memory):
+            with suppress(toolchain.NoCompilerError):
+                return _build(units, names, options, store, compiler, is_installed=False)
+        raise
+
+
+def _build(
+    units: Sequence[Unit],
+    names: Sequence[str],
+    options: CompileOptions,
+    store: Cache,
+    compiler: toolchain.Compiler,
+    is_installed: bool = True,
+) -> Built:
+    """As `build`, with this compiler. Raises NoCompilerError if it would have to run and is not installed."""
     began = time.perf_counter()
-    compiler = toolchain.find_compiler(store.memory)
     plan = recipe(options)
     known = None
     if all(unit.key is not None for unit in units):
@@ -141,6 +162,8 @@ def build(units: Sequence[Unit], names: Sequence[str], options: CompileOptions, 
     key = digest("library", *kernels, compiler.identity, *_surroundings(plan))
     entry = store.find(key)
     if entry is None:
+        if not is_installed:
+            raise toolchain.NoCompilerError
         manifest: Json = {}
 
         def produce(output: Path) -> None:

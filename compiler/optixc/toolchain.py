@@ -53,6 +53,16 @@ class ToolchainError(OptixError):
     code = Result.ERROR_INTERNAL_COMPILER_ERROR
 
 
+class NoCompilerError(ToolchainError):
+    """No C++ compiler is installed, as far as PATH and OPTIXC_CXX tell."""
+
+    def __init__(self) -> None:
+        super().__init__(
+            f"no C++ compiler found: install g++ {MIN_GCC} or newer (Debian: apt-get install g++) or clang++ {MIN_CLANG} or newer, "
+            "or set OPTIXC_CXX to one"
+        )
+
+
 @dataclass(frozen=True)
 class Compiler:
     """A C++ compiler on this machine; `kind` is "clang" or "gcc". `command` is what is run, `path` the real file behind it."""
@@ -112,10 +122,18 @@ def find_compiler(memory: Path | None = None) -> Compiler:
     found = next(_usable(memory), None)
     if found is not None:
         return found
-    raise ToolchainError(
-        f"no C++ compiler found: install g++ {MIN_GCC} or newer (Debian: apt-get install g++) or clang++ {MIN_CLANG} or newer, "
-        "or set OPTIXC_CXX to one"
-    )
+    raise NoCompilerError
+
+
+def remembered_compilers(memory: Path | None) -> list[Compiler]:
+    """Compilers that the folder `memory` knows from earlier processes, the last one first; they need not be there any more."""
+    if memory is None:
+        return []
+    made = []
+    for key, (kind, version) in reversed(_remembered(memory).items()):
+        path, size, mtime_ns = key.rsplit(":", 2)
+        made += [Compiler(path, path, int(size), int(mtime_ns), kind, tuple(version))] if kind else []
+    return made
 
 
 def installed_compilers(memory: Path | None = None) -> tuple[Compiler, ...]:

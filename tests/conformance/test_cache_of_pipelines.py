@@ -96,6 +96,27 @@ def test_T021_bound_values_have_entries_of_their_own(tmp_path: Path) -> None:
     assert len(set(libraries)) == 3
 
 
+def test_without_a_compiler_the_cache_still_serves(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    folder, empty = tmp_path / "cache", tmp_path / "empty"
+    value, _ = run(folder)
+    monkeypatch.setattr(toolchain, "_versions", {})
+    monkeypatch.setenv("PATH", str(empty))
+    monkeypatch.delenv("OPTIXC_CXX", raising=False)
+    again, report = run(folder)
+    assert (again, report.cache_hit) == (value, True)
+    for other, options in ((folder, {"bound_values": {"k": 7}}), (empty, {})):
+        with pytest.raises(ox.ToolchainError, match=r"no C\+\+ compiler found: install g\+\+ 12"):
+            run(other, **options)
+
+
+def test_a_warning_names_the_callers_line(tmp_path: Path) -> None:
+    (tmp_path / "file").touch()
+    context = ox.DeviceContext(cache_dir=tmp_path / "file")
+    with pytest.warns(ox.OptixcWarning, match=r"the cache folder .* cannot be written") as told:
+        context.module_create(SHADER)
+    assert [one.filename for one in told] == [__file__]
+
+
 def test_T023_two_processes_compile_at_once(tmp_path: Path) -> None:
     other = tmp_path / "other.py"
     other.write_text(SHADER.read_text().replace("1000.0", "1500.0"))

@@ -141,6 +141,8 @@ def test_settings_from_the_environment(monkeypatch: pytest.MonkeyPatch, tmp_path
         assert max_size() == expected
     monkeypatch.setenv("OPTIXC_CACHE_DIR", str(tmp_path))
     assert default_folder() == tmp_path
+    monkeypatch.setenv("OPTIXC_CACHE_DIR", "~/compiled")
+    assert default_folder() == Path.home() / "compiled"
     monkeypatch.delenv("OPTIXC_CACHE_DIR")
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "xdg"))
     assert default_folder() == tmp_path / "xdg" / "optixc"

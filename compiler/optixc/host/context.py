@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import logging
+import os
 import sys
 import traceback
 import warnings
@@ -16,6 +17,7 @@ from optixc.host.properties import property_value
 from optixc.host.whole_numbers import WORD_LIMIT, take_whole
 from optixc.installation import embree_path
 
+_PACKAGE = os.path.dirname(os.path.dirname(__file__)) + os.sep
 LogCallback = Callable[[int, str, str], None]
 LOG_FATAL, LOG_ERROR, LOG_WARNING, LOG_PRINT = 1, 2, 3, 4
 
@@ -109,7 +111,7 @@ class Context:
             return
         if callback is None:
             if level <= LOG_WARNING:
-                warnings.warn(message, OptixcWarning, stacklevel=4)
+                warnings.warn(message, OptixcWarning, stacklevel=_level_of_caller())
             return
         try:
             callback(level, tag, message)
@@ -151,3 +153,11 @@ class Context:
     def __del__(self) -> None:
         if getattr(self, "_handle", None) is not None and not sys.is_finalizing():
             self.destroy()
+
+
+def _level_of_caller() -> int:
+    """The stack level, as `log` gives it to `warnings.warn`, of the line outside of this package that everything began with."""
+    frame, level = sys._getframe(1), 1
+    while frame.f_back is not None and frame.f_code.co_filename.startswith(_PACKAGE):
+        frame, level = frame.f_back, level + 1
+    return level
