@@ -73,8 +73,8 @@ _FAMILIES = {
 
 _VECTORS_HEAD = '''"""Vector classes for editors and type checkers. Written by docs/generate.py; `vectors` makes the classes themselves."""
 
-from collections.abc import Sequence
-from typing import Any
+from collections.abc import Iterator, Sequence
+from typing import Any, Self, overload
 
 import numpy as np
 
@@ -82,6 +82,18 @@ from optixc.host.vectors import Vector
 
 _Array = np.ndarray[Any, Any]
 '''
+
+_ARITHMETIC = ("add", "sub", "mul", "floordiv", "mod", "pow", "radd", "rsub", "rmul", "rfloordiv", "rmod", "rpow")
+_OPERATORS = {
+    "Floats": ("float", (*_ARITHMETIC, "truediv", "rtruediv")),
+    "Integers": ("int", (*_ARITHMETIC, "and", "or", "xor", "rand", "ror", "rxor", "lshift", "rshift")),
+}
+_OPERATOR = """    @overload
+    def __{name}__(self, other: Self | {scalar}) -> Self: ...
+    @overload
+    def __{name}__(self, other: Any) -> Any: ...
+"""
+_BASES = {"bool": "Vector", "int": "_Integers", "float": "_Floats"}
 
 
 def device_functions_stub() -> str:
@@ -158,6 +170,8 @@ def _signatures(row: Intrinsic) -> list[str]:
         for parameter in row.parameters:
             if parameter.type is Generic.HANDLES:
                 texts.append(_parameter(parameter, "Any"))
+            elif row.parameters[0].type is Generic.ARRAY and parameter.name == "index":
+                texts.append(_parameter(parameter, "int | tuple[int, ...]"))
             elif isinstance(parameter.type, Generic):
                 scalar = "float" if parameter.type is Generic.ELEMENT else form
                 texts.append(_parameter(parameter, "_V | float" if several and scalar == "_V" else scalar))
@@ -181,12 +195,17 @@ def _results(rows: tuple[Intrinsic, ...]) -> list[str]:
 
 
 def vector_types_stub() -> str:
-    """The text of vector_types.pyi: components, and what a field of the type may be given (a descriptor's `__set__`)."""
+    """The text of vector_types.pyi: operators, components, and what a field of the type may be given (a descriptor's `__set__`)."""
     parts = [_VECTORS_HEAD]
+    for base, (scalar, operators) in _OPERATORS.items():
+        parts.append(f"\nclass _{base}(Vector):\n{''.join(_OPERATOR.format(name=name, scalar=scalar) for name in operators)}")
     for family, scalar in _FAMILIES.items():
         for size in (2, 3, 4):
             components = "".join(f"    {letter}: {scalar}\n" for letter in "xyzw"[:size])
             given = f"Vector | Sequence[float] | _Array | {'bool' if scalar == 'bool' else 'float'}"
-            setter = f"    def __set__(self, instance: Any, value: {given}) -> None: ...\n"
-            parts.append(f"\nclass {family}{size}(Vector):\n{components}{setter}")
+            setter = "    def __get__(self, instance: Any, owner: Any = ...) -> Self: ...\n"
+            setter += f"    def __set__(self, instance: Any, value: {given}) -> None: ...\n"
+            items = f"    def __getitem__(self, index: int) -> {scalar}: ...\n    def __iter__(self) -> Iterator[{scalar}]: ...\n"
+            items += f"    def __setitem__(self, index: int, value: {'bool' if scalar == 'bool' else 'float'}) -> None: ...\n"
+            parts.append(f"\nclass {family}{size}({_BASES[scalar]}):\n{components}{items}{setter}")
     return "".join(parts)

@@ -16,6 +16,8 @@ from tqdm import tqdm
 import optixc as ox
 from optixc.stdlib.camera import Pinhole
 
+Point = Sequence[float] | np.ndarray
+
 
 def options(description: str | None, output: str, width: int, height: int, samples: int) -> argparse.ArgumentParser:
     """A parser with the size of the picture, the samples of a pixel, the exposure and the file."""
@@ -34,7 +36,7 @@ def save(image: np.ndarray, arguments: argparse.Namespace) -> None:
     print(f"  picture  {arguments.output}")
 
 
-def pinhole(eye: Sequence[float], target: Sequence[float], vertical_fov: float, aspect: float) -> Pinhole:
+def pinhole(eye: Point, target: Point, vertical_fov: float, aspect: float) -> Pinhole:
     """A camera as half axes of its image plane; y is up, the field of view in degrees, `aspect` is width over height."""
     w = np.subtract(target, eye)
     right = np.cross(w, [0.0, 1.0, 0.0])

@@ -1372,37 +1372,37 @@ def inverse(m: float3x3) -> float3x3:
 def tex2d(texture: Texture, u: float, v: float) -> float4:
     """The filtered texel at (u, v) in [0, 1]; missing channels are 0, alpha 1."""
 
-def atomic_add(array: Any, index: int, value: float) -> Any:
+def atomic_add(array: Any, index: int | tuple[int, ...], value: float) -> Any:
     """Add to an element; gives the value before."""
 
-def atomic_sub(array: Any, index: int, value: float) -> Any:
+def atomic_sub(array: Any, index: int | tuple[int, ...], value: float) -> Any:
     """Subtract from an element; gives the value before."""
 
-def atomic_exch(array: Any, index: int, value: float) -> Any:
+def atomic_exch(array: Any, index: int | tuple[int, ...], value: float) -> Any:
     """Replace an element; gives the value before."""
 
-def atomic_min(array: Any, index: int, value: float) -> Any:
+def atomic_min(array: Any, index: int | tuple[int, ...], value: float) -> Any:
     """Make an element the smaller of it and the value; gives the value before."""
 
-def atomic_max(array: Any, index: int, value: float) -> Any:
+def atomic_max(array: Any, index: int | tuple[int, ...], value: float) -> Any:
     """Make an element the larger of it and the value; gives the value before."""
 
-def atomic_and(array: Any, index: int, value: float) -> Any:
+def atomic_and(array: Any, index: int | tuple[int, ...], value: float) -> Any:
     """Bitwise and with an integer element; gives the value before."""
 
-def atomic_or(array: Any, index: int, value: float) -> Any:
+def atomic_or(array: Any, index: int | tuple[int, ...], value: float) -> Any:
     """Bitwise or with an integer element; gives the value before."""
 
-def atomic_xor(array: Any, index: int, value: float) -> Any:
+def atomic_xor(array: Any, index: int | tuple[int, ...], value: float) -> Any:
     """Bitwise exclusive or with an integer element; gives the value before."""
 
-def atomic_inc(array: Any, index: int, value: float) -> Any:
+def atomic_inc(array: Any, index: int | tuple[int, ...], value: float) -> Any:
     """Add 1, or go to 0 from the value on; gives the value before."""
 
-def atomic_dec(array: Any, index: int, value: float) -> Any:
+def atomic_dec(array: Any, index: int | tuple[int, ...], value: float) -> Any:
     """Subtract 1, or go to the value from 0 and above it; gives the value before."""
 
-def atomic_cas(array: Any, index: int, compare: float, value: float) -> Any:
+def atomic_cas(array: Any, index: int | tuple[int, ...], compare: float, value: float) -> Any:
     """Replace an element by `value` if it is `compare`; gives the value before."""
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import importlib
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -33,7 +34,7 @@ def load(path: Path) -> Mesh:
     return Mesh(vertices, indices, vertex_normals(vertices, indices), file_colors(mesh.visual, len(vertices)))
 
 
-def file_colors(visual: object, count: int) -> np.ndarray:
+def file_colors(visual: Any, count: int) -> np.ndarray:
     """Colours per vertex where the file has them, as linear floats; else the same grey everywhere."""
     stored = visual.to_color() if hasattr(visual, "to_color") else visual
     encoded = getattr(stored, "vertex_colors", None)

@@ -35,7 +35,7 @@ class Params:
     samples: int
     max_depth: int
     hairs: ox.Array[Hair]
-    lights: ox.FixedArray[RectangleLight, 2]  # type: ignore[valid-type]
+    lights: ox.FixedArray[RectangleLight, 2]
     ambient: float3
 
 
@@ -102,7 +102,7 @@ def draw_light(point: float3, u: float2) -> LightSample:
     """A point of one of the lights, each as likely as the other; the radiance is made up for that."""
     chosen = 1 if u.x >= 0.5 else 0
     v = float2(2.0 * u.x - float(chosen), u.y)
-    sample = rectangle_light(params.lights[chosen], point, v)  # type: ignore[index]
+    sample = rectangle_light(params.lights[chosen], point, v)
     sample.radiance *= float(LIGHTS)
     return sample
 

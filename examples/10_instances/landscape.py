@@ -59,7 +59,8 @@ def landscape() -> Landscape:
     heights = 14.0 + 20.0 * smooth_noise(11, 2.1, 2)
     heights += 150.0 * np.clip(-z - 0.15, 0.0, 1.0) ** 1.6 + 60.0 * np.abs(x) ** 2.5
     heights -= 46.0 * np.exp(-(((x - 0.02) / 0.22) ** 2) - ((z - 0.28 - 0.35 * x) / 0.10) ** 2)
-    slope = np.hypot(*np.gradient(heights, SIZE / (CELLS - 1)))
+    along_z, along_x = np.gradient(heights, SIZE / (CELLS - 1))
+    slope = np.hypot(along_z, along_x)
     return Landscape(heights, slope)
 
 

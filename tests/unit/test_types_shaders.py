@@ -1,7 +1,13 @@
-"""mypy on shader files and host files as the README writes them: correct ones pass, names are known, wrong uses are told."""
+"""mypy and pyright on shader files and host files: correct ones pass, names and fields are known, wrong uses are told.
+
+pyright is no requirement of the tests: what PyPI has under that name fetches the checker from npm when it first runs. Where it is
+installed it has to be content with the same files.
+"""
 
 from __future__ import annotations
 
+import shutil
+import subprocess
 import sys
 from pathlib import Path
 
@@ -12,8 +18,12 @@ import optixc
 
 ROOT = Path(__file__).parents[2]
 EXAMPLES = sorted(path.parent for path in (ROOT / "examples").glob("*/shader.py"))
+SHADERS = sorted(path for pattern in ("samples", "golden/*", "conformance/shaders") for path in (ROOT / "tests").glob(f"{pattern}/*.py"))
+STDLIB = sorted((ROOT / "stdlib").glob("*.py"))
 
 SHADER = '''
+from typing import assert_type
+
 import numpy as np
 
 import optixc as ox
@@ -26,6 +36,9 @@ class Params:
     scene: ox.Traversable
     eye: float3
     camera: ox.float3x4
+    weights: ox.FixedArray[float, 4]
+    counts: ox.Array[ox.uint32]
+    noise: ox.Texture
 
 
 @ox.struct
@@ -52,7 +65,17 @@ def __raygen__pinhole():
     v = float3(1.0)
     v.x = ox.max(1.0, 2.0)
     ray.color.y = float(ox.max(1, words[0]))
-    params.image[i.y, i.x] = float4(ox.lerp(v, ray.color, 0.5), 1.0)
+    v[1] = 0.5
+    rows = params.camera * 2.0 + params.camera
+    rows[0] = ox.tex2d(params.noise, v.x, v.y)
+    table = ox.FixedArray[ox.int32, 4](1, 2, 3, 4)
+    table[i.x & 3] += 2
+    before = ox.atomic_add(params.counts, table[0], 1)
+    params.image[i.y, i.x] = float4(ox.lerp(v, ray.color, params.weights[1]), float(before)) + rows[0]
+    assert_type(params.image[i.y, i.x], float4)
+    assert_type(2.0 * params.eye - v / 3.0, float3)
+    assert_type(ox.floor(params.eye * 2.0).x, float)
+    assert_type(rows[0].w, float)
 
 
 @ox.program
@@ -64,7 +87,10 @@ def __closesthit__matte(ray: Radiance, material: Material):
 material = Material(albedo=(1, 0, 0))
 material.albedo = (0.5, 0.5, 0.5)
 color: float3 = material.albedo
-host = Params(image=np.zeros((2, 2, 4), np.float32), scene=3, eye=np.zeros(3), camera=np.eye(3, 4))
+counts = np.zeros(4, np.uint32)
+host = Params(np.zeros((2, 2, 4), np.float32), 3, eye=np.zeros(3), camera=np.eye(3, 4), weights=[1, 2, 3, 4], counts=counts, noise=None)
+assert_type(host.eye.x, float)
+assert_type(material.roughness, float)
 '''
 
 
@@ -101,6 +127,43 @@ def test_wrong_uses_are_told(monkeypatch: pytest.MonkeyPatch, cache: Path, tmp_p
     said = check(monkeypatch, cache, str(tmp_path / "scene.py"))
     assert told in said
     assert len(said.splitlines()) <= 3
+
+
+def test_other_shaders_pass(monkeypatch: pytest.MonkeyPatch, cache: Path) -> None:
+    # mypy takes a name for a FixedArray, which payload32 has, for a variable; `shader` is one module to it.
+    named = {path.stem: path for path in SHADERS if path.stem not in ("shader", "payload32") and not path.stem.startswith("test_")}
+    assert check(monkeypatch, cache, *map(str, named.values())) == ""
+
+
+def test_nothing_is_silenced() -> None:
+    """What a checker says is no reason to write more than the shader."""
+    files = [*EXAMPLES[0].parent.rglob("*.py"), *STDLIB, *SHADERS]
+    assert [path for path in files if path.stem != "test_samples" and "type: ignore" in path.read_text()] == []
+
+
+def pyright(*arguments: str) -> str:
+    """What pyright says, "" if nothing."""
+    program = shutil.which("pyright", path=str(Path(sys.executable).parent)) or shutil.which("pyright")
+    if program is None:
+        pytest.skip("pyright is not installed (pip install pyright)")
+    done = subprocess.run([program, "--pythonpath", sys.executable, *arguments], capture_output=True, text=True)
+    if done.returncode not in (0, 1):
+        pytest.skip(f"pyright does not run: {(done.stdout + done.stderr)[-200:]}")
+    return "" if done.returncode == 0 else done.stdout
+
+
+def test_pyright_passes_what_is_correct(tmp_path: Path) -> None:
+    (tmp_path / "scene.py").write_text(SHADER)
+    files = [tmp_path / "scene.py", *EXAMPLES[0].parent.rglob("*.py"), *STDLIB, *(path for path in SHADERS if "test_" not in path.stem)]
+    assert pyright(*map(str, files)) == ""
+
+
+def test_pyright_tells_wrong_uses(tmp_path: Path) -> None:
+    wrong = ['Material(albedo="red")', "Material(color=(1, 0, 0))", "ox.normalise(color)", "ox.cross(color)", "count: int = ox.sqrt(2.0)"]
+    (tmp_path / "scene.py").write_text(SHADER + "\n".join(wrong) + "\n")
+    said = pyright(str(tmp_path / "scene.py"))
+    first = len(SHADER.splitlines()) + 1
+    assert [number for number in range(first, first + len(wrong)) if f"scene.py:{number}:" not in said] == []
 
 
 @pytest.mark.parametrize("folder", EXAMPLES, ids=lambda folder: folder.name)

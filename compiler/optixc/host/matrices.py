@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar, Self
 
 import numpy as np
 
-from optixc.host.vectors import Vector, vector_class
+from optixc.host.vectors import Vector, float3, float4, vector_class
 
 
 class Matrix:
@@ -65,6 +65,21 @@ class Matrix:
                 return kind(*[_dot(row, column) for row in self._array for column in other._array.T])
         return NotImplemented
 
+    def __add__(self, other: Self) -> Self:
+        return type(self)(self._array + other._array) if type(other) is type(self) else NotImplemented
+
+    def __sub__(self, other: Self) -> Self:
+        return type(self)(self._array - other._array) if type(other) is type(self) else NotImplemented
+
+    def __mul__(self, factor: float) -> Self:
+        """By a number; `@` is the product of matrices."""
+        return type(self)(self._array * np.float32(factor)) if isinstance(factor, int | float | np.number) else NotImplemented
+
+    __rmul__ = __mul__
+
+    def __neg__(self) -> Self:
+        return type(self)(-self._array)
+
 
 def _dot(left: np.ndarray[Any, Any], right: np.ndarray[Any, Any]) -> float:
     """The sum of products from left to right, each step in binary32."""
@@ -80,6 +95,10 @@ class float3x3(Matrix):
 
     if TYPE_CHECKING:
 
+        def __getitem__(self, row: int) -> float3: ...
+        def __setitem__(self, row: int, value: float3) -> None: ...
+        def __iter__(self) -> Iterator[float3]: ...
+        def __get__(self, instance: Any, owner: Any = ...) -> Self: ...
         def __set__(self, instance: Any, value: Any) -> None:
             """A field takes anything that numpy makes an array of this shape."""
 
@@ -90,6 +109,10 @@ class float3x4(Matrix):
 
     if TYPE_CHECKING:
 
+        def __getitem__(self, row: int) -> float4: ...
+        def __setitem__(self, row: int, value: float4) -> None: ...
+        def __iter__(self) -> Iterator[float4]: ...
+        def __get__(self, instance: Any, owner: Any = ...) -> Self: ...
         def __set__(self, instance: Any, value: Any) -> None:
             """A field takes anything that numpy makes an array of this shape."""
 
@@ -100,6 +123,10 @@ class float4x4(Matrix):
 
     if TYPE_CHECKING:
 
+        def __getitem__(self, row: int) -> float4: ...
+        def __setitem__(self, row: int, value: float4) -> None: ...
+        def __iter__(self) -> Iterator[float4]: ...
+        def __get__(self, instance: Any, owner: Any = ...) -> Self: ...
         def __set__(self, instance: Any, value: Any) -> None:
             """A field takes anything that numpy makes an array of this shape."""
 
