@@ -93,6 +93,8 @@ _OPERATOR = """    @overload
     @overload
     def __{name}__(self, other: Any) -> Any: ...
 """
+_WIDENED = {"char": "int", "short": "int", "uchar": "uint", "ushort": "uint", "half": "float"}
+"""What a field of a storage family is when it is read."""
 _BASES = {"bool": "Vector", "int": "_Integers", "float": "_Floats"}
 
 
@@ -203,7 +205,8 @@ def vector_types_stub() -> str:
         for size in (2, 3, 4):
             components = "".join(f"    {letter}: {scalar}\n" for letter in "xyzw"[:size])
             given = f"Vector | Sequence[float] | _Array | {'bool' if scalar == 'bool' else 'float'}"
-            setter = "    def __get__(self, instance: Any, owner: Any = ...) -> Self: ...\n"
+            read = f"{_WIDENED[family]}{size}" if family in _WIDENED else "Self"
+            setter = f"    def __get__(self, instance: Any, owner: Any = ...) -> {read}: ...\n"
             setter += f"    def __set__(self, instance: Any, value: {given}) -> None: ...\n"
             items = f"    def __getitem__(self, index: int) -> {scalar}: ...\n    def __iter__(self) -> Iterator[{scalar}]: ...\n"
             items += f"    def __setitem__(self, index: int, value: {'bool' if scalar == 'bool' else 'float'}) -> None: ...\n"
