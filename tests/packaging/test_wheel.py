@@ -5,7 +5,6 @@ from __future__ import annotations
 import os
 import subprocess
 import sys
-import sysconfig
 import zipfile
 from pathlib import Path
 
@@ -73,7 +72,8 @@ def test_it_runs_on_its_own(wheel: Path, tmp_path: Path) -> None:
     site = tmp_path / "site"
     zipfile.ZipFile(wheel).extractall(site)
     # Without the site module no editable install can come first; the packages it depends on are named instead.
-    environment = {**os.environ, "PYTHONPATH": f"{site}:{sysconfig.get_path('purelib')}:{sysconfig.get_path('platlib')}"}
+    packages = [folder for folder in sys.path if folder.endswith("-packages")]
+    environment = {**os.environ, "PYTHONPATH": ":".join([str(site), *packages])}
     done = subprocess.run([sys.executable, "-S", "-c", LAUNCH, str(site)], env=environment, cwd=tmp_path, capture_output=True, text=True,
                           check=False, timeout=300)
     assert (done.returncode, done.stderr) == (0, "")
