@@ -287,8 +287,8 @@ RTCBounds Accel::boundsDuring(float, float) const
 RTCBounds Accel::boundsAt(std::uint32_t key) const
 {
     if (source) return source->boundsAt(key);
-    if (motion.numKeys < 2) return boundsDuring(0, 0);
     if (instances) {
+        if (motion.numKeys < 2) return boundsDuring(0, 0);
         const float fraction = static_cast<float>(key) / static_cast<float>(motion.numKeys - 1);
         return instances->boundsAt(motion.timeBegin + (motion.timeEnd - motion.timeBegin) * fraction);
     }

@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <cstdint>
+#include <limits>
 
 namespace oxrt {
 
@@ -21,6 +22,26 @@ void checkRadii(const OxrtBuildInput& input, unsigned number, bool isNegativeSki
                 fail(OXRT_ERROR_INVALID_VALUE, "input %u: radii[%u][%llu] is %g; radii of curves are numbers from 0", number, key,
                      static_cast<unsigned long long>(i), static_cast<double>(radius));
         }
+}
+
+// An upper bound, near the largest value, of a + b u + c u^2 + d u^3 for u in [0, 1].
+float largestIn01(const float (&terms)[4])
+{
+    const auto at = [&terms](double u) { return terms[0] + u * (terms[1] + u * (terms[2] + u * double(terms[3]))); };
+    double largest = std::max(at(0), at(1));
+    // the derivative b + 2 c u + 3 d u^2; of its two roots each is found without the difference of two near numbers
+    const double b = terms[1];
+    const double c = terms[2];
+    const double d = 3 * double(terms[3]);
+    const double discriminant = c * c - b * d;
+    if (discriminant > 0) {
+        const double q = -(c + std::copysign(std::sqrt(discriminant), c));
+        for (const double u : {q / d, b / q})
+            if (u > 0 && u < 1) largest = std::max(largest, at(u));
+    }
+    // the terms are rounded, and the points on the surface will be
+    const double size = std::fabs(terms[0]) + std::fabs(terms[1]) + std::fabs(terms[2]) + std::fabs(terms[3]);
+    return static_cast<float>(largest + 4 * double(std::numeric_limits<float>::epsilon()) * size);
 }
 
 } // namespace
@@ -107,17 +128,24 @@ Cubic segmentAt(const OxrtGeometry& view, std::uint32_t primitive, const KeyPosi
 
 RTCBounds segmentBounds(const OxrtGeometry& view, std::uint32_t primitive, std::uint32_t key)
 {
-    const Bezier bezier = bezierOf(segmentAt(view, primitive, {key, 0}));
-    const Point4& first = bezier.p[0];
-    Point4 low = first;
-    Point4 high = first;
-    float radius = 0;
-    for (const Point4& p : bezier.p) {
-        low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z), 0};
-        high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z), 0};
-        radius = std::max(radius, std::fabs(p.w));
+    const Cubic segment = segmentAt(view, primitive, {key, 0});
+    const float radii[4] = {segment.a.w, segment.b.w, segment.c.w, segment.d.w};
+    RTCBounds bounds = {};
+    float* const low[3] = {&bounds.lower_x, &bounds.lower_y, &bounds.lower_z};
+    float* const high[3] = {&bounds.upper_x, &bounds.upper_y, &bounds.upper_z};
+    for (int axis = 0; axis < 3; ++axis) {
+        const auto at = [axis](const Point4& p) { return axis == 0 ? p.x : axis == 1 ? p.y : p.z; };
+        const float terms[4] = {at(segment.a), at(segment.b), at(segment.c), at(segment.d)};
+        float above[4];
+        float below[4];
+        for (int i = 0; i < 4; ++i) {
+            above[i] = terms[i] + radii[i];
+            below[i] = radii[i] - terms[i];
+        }
+        *high[axis] = largestIn01(above);
+        *low[axis] = -largestIn01(below);
     }
-    return {low.x - radius, low.y - radius, low.z - radius, 0, high.x + radius, high.y + radius, high.z + radius, 0};
+    return bounds;
 }
 
 } // namespace oxrt

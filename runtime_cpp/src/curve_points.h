@@ -14,7 +14,7 @@ namespace oxrt {
 
 // `primitive` of a curve view as a polynomial, between its motion keys.
 Cubic segmentAt(const OxrtGeometry& view, std::uint32_t primitive, const KeyPosition& position);
-// The bounds of a segment's tube at one motion key: those of its Bezier points, grown by their radii.
+// The bounds at one motion key of the spheres along a segment.
 RTCBounds segmentBounds(const OxrtGeometry& view, std::uint32_t primitive, std::uint32_t key);
 
 // A flat end of a strand: where the curve begins (end 0) or stops (end 1).

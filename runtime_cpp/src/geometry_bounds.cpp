@@ -10,12 +10,18 @@ namespace oxrt {
 
 namespace {
 
+// Empty for a triangle that is never hit: with a corner that is no number, or two in one place.
 RTCBounds boundsOfTriangle(const float* vertices, const std::uint32_t* corners)
 {
     RTCBounds bounds = emptyBounds();
     for (int corner = 0; corner < 3; ++corner) {
         const float* p = vertices + 3 * std::size_t(corners[corner]);
-        if (!std::isfinite(p[0] + p[1] + p[2])) return emptyBounds(); // never hit
+        const float* next = vertices + 3 * std::size_t(corners[(corner + 1) % 3]);
+        if (std::equal(p, p + 3, next)) return bounds;
+    }
+    for (int corner = 0; corner < 3; ++corner) {
+        const float* p = vertices + 3 * std::size_t(corners[corner]);
+        if (!std::isfinite(p[0] + p[1] + p[2])) return emptyBounds();
         extend(bounds, {p[0], p[1], p[2], 0, p[0], p[1], p[2], 0});
     }
     return bounds;

@@ -40,6 +40,8 @@ REASONS = {
 AT_END = 3e-7
 # In radii: the recorded ends are tilted by a few degrees; a grazing ray turns 1e-3 across the tube into more along the ray.
 CAP_SPREAD, TUBE_SPREAD = 0.1, 0.05
+# The growth of a radius along a segment that is more than rounding, of the radius.
+GROWTH = 1e-6
 CURVE_TYPES = frozenset(brute_force_curves.BASES)
 
 
@@ -51,6 +53,8 @@ def curve_difference(probe: Probe, given: dict[str, Any], ours: list[dict[str, A
         probe, given, hits, met[0][1])):
         return name
     for event, segment in met:
+        if segment.curve_type == RIBBON and not brute_force_curves.is_on_curve(probe.scene, given, event):
+            return None
         if name := _of_hit(event, segment):
             return name
         if segment.curve_type == LINEAR and brute_force_curves.is_inside(probe.scene, given, event):
@@ -95,7 +99,7 @@ def _of_hit(event: dict[str, Any], segment: Segment) -> str | None:
     if segment.is_parallel():
         return PARALLEL
     if segment.is_straight() and (u <= AT_END or u >= 1.0 - AT_END):
-        return CONE_END if u == 1.0 and segment.slope(1.0)[3] != 0.0 else STRAIGHT_JOINT
+        return CONE_END if u == 1.0 and abs(segment.slope(1.0)[3]) > GROWTH * segment.at(1.0)[3] else STRAIGHT_JOINT
     return TOO_THICK if segment.is_thick() else None
 
 

@@ -157,7 +157,7 @@ def test_T114_boxes_of_each_motion_key(harness: Harness, item: dict[str, Any], l
     scene = [{**gas({**item, key: keys, **radii}), **motion}, {**ias(instance(transform=translation(*SHIFT))), **motion}]
     accel, top = build(harness.context, scene).values()
     found = accel.emit_property(ox.AccelPropertyType.AABBS)
-    assert found == pytest.approx(np.array([expected + step * MOTION for step in range(3)]), abs=1e-6)
+    assert found == pytest.approx(np.array([expected + step * MOTION for step in range(3)]), abs=1e-6, rel=1e-6)
     above = top.emit_property(ox.AccelPropertyType.AABBS)
     assert above.shape == (3, 2, 3)
     assert (above[:, 0] <= found[:, 0] + SHIFT).all()

@@ -15,6 +15,7 @@ import oracle_files
 import oracle_special
 import pytest
 from harness import Harness
+from oracle_bounds import box_differences
 from oracle_compare import unlawful
 from oracle_differences import REASONS, compare
 from oracle_events import record
@@ -56,7 +57,7 @@ def test_traced_probe(harness: Harness, excused: Counter[str], probe: Probe) -> 
         return
     scene = build(harness.context, probe.scene)
     results = record(harness, probe, scene)
-    found: list[str] = []
+    found = box_differences(probe.scene, scene)
     names: Counter[str] = Counter()
     for index, result in enumerate(results):
         differences, unexplained = compare(probe, index, result)
