@@ -69,6 +69,20 @@ PROGRAMS = {
             value = value * 31 + grid[row][column].a + 7 * grid[row][column].c
     params.out_int32[i, 0] = value
 """,
+    "uniform_wholes_in_varying_places": """
+    smalls = ox.FixedArray[Small, 2](small_of(i, 0.5), small_of(3, 0.25))
+    rows = Rows(ox.copy(smalls), ox.FixedArray[float3, 4](), float3x4(float4(), float4(), float4()))
+    nested = Nested(small_of(i, 0.25), i, Wide(1, 2.0, float3(i), uint2(3)), ox.FixedArray[float32, 4](0.5 * i, 1.0, 2.0, 3.0))
+    if i & 1:
+        rows.items = ox.FixedArray[Small, 2]()
+        rows.m = float3x4(float4(1.0), float4(2.0), float4(3.0))
+    else:
+        nested.list = ox.FixedArray[float32, 4]()
+        nested.first = small_of(2, 1.0)
+    rows.rows = ox.FixedArray[float3, 4]()
+    params.out_int32[i, 0] = rows.items[0].a + 10 * rows.items[1].c + 100 * nested.first.c
+    params.out_float32[i, 0] = nested.list[0] + nested.list[3] + rows.m[1].y + rows.rows[1].x + rows.items[1].e
+""",
     "enum_in_the_index_of_a_target": """
     values = ox.FixedArray[int32, 8]()
     values[Mode.SECOND], values[Bits.A | Bits.BOTH], value = i, 2 * i, values[LIMIT]

@@ -14,7 +14,7 @@ from optixc.codegen.cpp_expr import PRIMARY
 from optixc.codegen.cpp_signatures import Signatures
 from optixc.codegen.cpp_spmd_calls import LaneCalls
 from optixc.codegen.cpp_spmd_clones import Clones
-from optixc.codegen.cpp_spmd_expr import LaneDialect, LaneExpressions
+from optixc.codegen.cpp_spmd_expr import LaneDialect, LaneExpressions, spreads_itself
 from optixc.codegen.cpp_spmd_types import WideTypes
 from optixc.codegen.declarations import declarations, is_changed
 from optixc.codegen.names import Scope
@@ -46,7 +46,7 @@ from optixc.ir.nodes import (
     Trace,
     While,
 )
-from optixc.ir.types import Vector, Void
+from optixc.ir.types import Void
 from optixc.ir.walk import Body, expressions, place_root, statements
 from optixc.passes.uniformity import Clone
 
@@ -191,7 +191,7 @@ class LaneFunction:
         root = place_root(target)
         assert root is not None
         value = self._expressions.stored(self._expressions.text(statement.value), statement.value, target.type)
-        if root.name in self._clone.varying and isinstance(target.type, Vector) and target.type != statement.value.type:
+        if root.name in self._clone.varying and not spreads_itself(statement.value, target.type):
             value = self._expressions.stored(self._expressions.wide(statement.value), statement.value, target.type)
         place = self._expressions.place(target)
         if self._calls.has_varying_index(target):

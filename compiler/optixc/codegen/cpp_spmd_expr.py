@@ -29,7 +29,7 @@ from optixc.ir.nodes import (
     Logical,
     Select,
 )
-from optixc.ir.types import Scalar, ScalarKind, Struct, Tuple, Type, Vector, scalar_of
+from optixc.ir.types import FixedArray, Scalar, ScalarKind, Struct, Tuple, Type, Vector, scalar_of
 from optixc.ir.walk import subexpressions
 from optixc.passes.uniformity import COMMON_IN_INTERSECTION, Clone, varies
 
@@ -221,6 +221,9 @@ class LaneExpressions(Expressions):
             case Construct(type=Tuple()) if self.lanes.varies(expression):
                 items = [self.wide(argument) for argument in expression.arguments]
                 return Code(f"oxrt::makeTuple({', '.join(items)})")
+            case Construct(type=FixedArray(element=element)) if self.lanes.varies(expression):
+                items = [self.text(item) if spreads_itself(item, element) else self.wide(item) for item in expression.arguments]
+                return Code(f"{self.lanes.type_name(expression.type, expression)}{{{{{', '.join(items)}}}}}")
             case _:
                 return super().code(expression)
 
@@ -256,10 +259,14 @@ class LaneExpressions(Expressions):
             return super()._members(struct, node, arguments)
         members = []
         for field, argument, text in zip(struct.fields, node.arguments, arguments, strict=False):
-            spreads_itself = isinstance(argument.type, Scalar) or (isinstance(argument.type, Vector) and field.type == argument.type)
-            stays = self.lanes.varies(argument) or spreads_itself
+            stays = self.lanes.varies(argument) or spreads_itself(argument, field.type)
             members.append(self.stored(text if stays else self.wide(argument), argument, field.type))
         return members
+
+
+def spreads_itself(value: Expr, target: Type) -> bool:
+    """Whether C++ makes a varying value of type `target` from a uniform one by itself."""
+    return isinstance(value.type, Scalar) or (isinstance(value.type, Vector) and value.type == target)
 
 
 def _needs_mask(*expressions: Expr) -> bool:
