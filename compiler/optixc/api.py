@@ -132,7 +132,8 @@ class DeviceContext(Context):
             return self._open_source(source, include_dirs)
         except OptixError as error:
             self.tell(LOG_ERROR, "COMPILER", str(error))
-            raise
+            # The compiler's own frames tell an author of shaders nothing.
+            raise error.with_traceback(None) from error.__cause__
 
     def _open_source(self, source: Any, include_dirs: list[Path]) -> driver.Unit:
         if isinstance(source, ModuleType):

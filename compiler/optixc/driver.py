@@ -74,6 +74,10 @@ class Unit:
         return self._result
 
 
+_WITHOUT_MEANING = ("allow_clustered_geometry", "pipeline_launch_params_variable_name")
+"""Options of OptiX that say nothing on a CPU: they are accepted, and listed by the report."""
+
+
 @dataclass(frozen=True)
 class Built:
     """A compiled pipeline: where it lies, its launch parameters (`name`, `layout`, `size`), what the report says, its programs."""
@@ -330,7 +334,7 @@ def _describe(emitted: Emitted, options: CompileOptions, compiler: toolchain.Com
         "trace_uses": uses,
         "calls_callables": bool(signatures_called(emitted.pipeline)),
         "is_any_graph": int(options.pipeline.traversable_graph_flags) == 0,
-        "ignored": ["allow_clustered_geometry"] if options.pipeline.allow_clustered_geometry else [],
+        "ignored": [name for name in _WITHOUT_MEANING if getattr(options.pipeline, name)],
     }
 
 

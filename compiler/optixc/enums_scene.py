@@ -64,10 +64,12 @@ class GeometryFlags(IntFlag):
 
 
 class HitKind(IntEnum):
-    """OptiX's `OptixHitKind`."""
+    """OptiX's `OptixHitKind`; the longer names are those of OptiX."""
 
     FRONT_FACE = 0xFE
     BACK_FACE = 0xFF
+    TRIANGLE_FRONT_FACE = FRONT_FACE
+    TRIANGLE_BACK_FACE = BACK_FACE
 
 
 class IndicesFormat(IntEnum):
@@ -194,11 +196,14 @@ class TransformType(IntEnum):
 
 
 class TraversableGraphFlags(IntFlag):
-    """OptiX's `OptixTraversableGraphFlags`."""
+    """OptiX's `OptixTraversableGraphFlags`; the longer names are those of OptiX."""
 
     ANY = 0
     SINGLE_GAS = 1
     SINGLE_LEVEL_INSTANCING = 2
+    ALLOW_ANY = ANY
+    ALLOW_SINGLE_GAS = SINGLE_GAS
+    ALLOW_SINGLE_LEVEL_INSTANCING = SINGLE_LEVEL_INSTANCING
 
 
 class TraversableType(IntEnum):

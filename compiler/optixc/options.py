@@ -26,7 +26,8 @@ class PipelineCompileOptions:
     """OptiX's OptixPipelineCompileOptions. Payload and attribute counts are taken from the shader's classes; if given they are limits,
     except that 0 payload values means that there is none, and that fewer than 2 attribute values count as 2.
 
-    `allow_clustered_geometry` is accepted and has no effect: there are no clusters on a CPU.
+    `allow_clustered_geometry` is accepted and has no effect: there are no clusters on a CPU. So is
+    `pipeline_launch_params_variable_name`: programs say `ox.launch_params` themselves.
     """
 
     uses_motion_blur: bool = False
@@ -34,6 +35,7 @@ class PipelineCompileOptions:
     num_payload_values: int | None = None
     num_attribute_values: int | None = None
     exception_flags: ExceptionFlags = ExceptionFlags.NONE
+    pipeline_launch_params_variable_name: str | None = None
     uses_primitive_type_flags: PrimitiveTypeFlags | int = 0
     allow_opacity_micromaps: bool = False
     allow_clustered_geometry: bool = False
@@ -48,6 +50,9 @@ class PipelineCompileOptions:
         kinds = self.uses_primitive_type_flags
         if not isinstance(kinds, int) or isinstance(kinds, bool) or not 0 <= kinds < 1 << 32:
             raise InvalidValueError(f"uses_primitive_type_flags combines PrimitiveTypeFlags, it is not {kinds!r}")
+        variable = self.pipeline_launch_params_variable_name
+        if variable is not None and not isinstance(variable, str):
+            raise InvalidValueError(f"pipeline_launch_params_variable_name is a name or None, not {variable!r}")
         for name in ("uses_motion_blur", "allow_opacity_micromaps", "allow_clustered_geometry"):
             if getattr(self, name) not in (False, True):
                 raise InvalidValueError(f"{name} must be False or True, not {getattr(self, name)!r}")

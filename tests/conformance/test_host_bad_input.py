@@ -8,6 +8,7 @@ import threading
 import time
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -311,3 +312,51 @@ def test_bound_values_become_constants(scene: Scene) -> None:
     params = shader.Params(np.zeros(4, np.float32), triangle(scene), 3.0)
     bound.launch(params, scene.table(), 4)
     assert params.hits.tolist() == [6.0] * 4
+
+
+def test_objects_say_what_they_are(scene: Scene) -> None:
+    context = ox.DeviceContext(validation=True)
+    table = scene.table()
+    shown = [repr(one) for one in (context, scene.pipeline, table, table.raygen, table.hitgroup[0], context.module_create(shader))]
+    context.destroy()
+    assert repr(context) == "<DeviceContext with validation destroyed>"
+    expected = ("<DeviceContext with validation>", "__raygen__rays", "1 miss, 1 hitgroup, 0 callables",
+                "<Record of <ProgramGroup RAYGEN __raygen__rays>, data None>", "Paint(", "__closesthit__paint")
+    for text, words in zip(shown, expected, strict=True):
+        assert words in text
+        assert "object at 0x" not in text
+
+
+@pytest.mark.parametrize(("size", "index"), [(4, 2), ((4,), (2,)), ([4, 1], [2, 0]), (np.array([4, 1, 1]), np.array([2, 0, 0])),
+                                             (ox.uint3(4, 1, 1), ox.uint3(2, 0, 0)), (np.int64(4), np.uint8(2))])
+def test_ways_to_name_a_launch_index(scene: Scene, size: Any, index: Any) -> None:
+    hits = np.zeros(4, np.float32)
+    ox.interpret(scene.pipeline, shader.Params(hits, triangle(scene), 1.0), scene.table(), size, index)
+    assert np.flatnonzero(hits).tolist() == np.flatnonzero(scene.launch(triangle(scene)) * (np.arange(4) == 2)).tolist() == [2]
+
+
+@pytest.mark.parametrize(("size", "index"), [((), 0), ((1, 1, 1, 1), 0), (4.0, 1), ("x", 1), (None, 1), (4, -1), (4, 4), ([4, 0.5], 1)])
+def test_no_launch_index(scene: Scene, size: Any, index: Any) -> None:
+    with pytest.raises(ox.InvalidValueError):
+        ox.interpret(scene.pipeline, shader.Params(np.zeros(4, np.float32), triangle(scene), 1.0), scene.table(), size, index)
+
+
+def test_an_option_that_says_nothing_here_is_told(scene: Scene) -> None:
+    options = ox.PipelineCompileOptions(pipeline_launch_params_variable_name="params")
+    pipeline = scene.context.pipeline_create(list(scene.groups.values()), options=options)
+    assert pipeline.report().ignored == ["pipeline_launch_params_variable_name"]
+    with pytest.raises(ox.InvalidValueError, match="pipeline_launch_params_variable_name is a name or None, not 3"):
+        ox.PipelineCompileOptions(pipeline_launch_params_variable_name=3)  # type: ignore[arg-type]
+
+
+def test_a_shaders_errors_are_raised_without_the_compilers_frames(tmp_path: Path) -> None:
+    path = tmp_path / "shader.py"
+    path.write_text("import optixc as ox\n@ox.program\ndef __raygen__r():\n    x = y\n")
+    with pytest.raises(ox.CompileError) as caught:
+        ox.DeviceContext().module_create(path)
+    assert {Path(frame.path).name for frame in caught.traceback} == {Path(__file__).name, "api.py"}
+
+
+def test_the_longer_names_of_enumerations() -> None:
+    assert ox.HitKind.TRIANGLE_BACK_FACE is ox.HitKind.BACK_FACE
+    assert ox.TraversableGraphFlags.ALLOW_SINGLE_GAS is ox.TraversableGraphFlags.SINGLE_GAS

@@ -143,6 +143,9 @@ class Context:
         if handle is not None and self._generation == library.process_generation():
             library.check(library.lib().oxrtContextDestroy(handle))
 
+    def __repr__(self) -> str:
+        return f"<{type(self).__name__}{' with validation' if self.validation else ''}{'' if self._handle is not None else ' destroyed'}>"
+
     def __enter__(self) -> Self:
         _ = self.handle
         return self

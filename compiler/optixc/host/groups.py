@@ -44,6 +44,9 @@ class Program:
     payload: str | None = None
     payload_name: str | None = None
 
+    def __repr__(self) -> str:
+        return f"<Program {self.name}>"
+
 
 class _NoSuchProgramError(InvalidValueError, KeyError):
     """A mapping raises KeyError, so that `name in module` and `module.get(name)` work."""
@@ -76,6 +79,9 @@ class Module(Mapping[str, Program]):
         if found is None:
             raise _NoSuchProgramError(f"the module has no program {name!r}; it has {', '.join(self._programs) or 'none'}")
         return found
+
+    def __repr__(self) -> str:
+        return f"<Module {' '.join(self._programs)}{' destroyed' if self._is_destroyed else ''}>"
 
     def __iter__(self) -> Iterator[str]:
         return iter(self._programs)
@@ -183,6 +189,9 @@ class Record:
         if data is not None:
             structs.observe(data, self)
         self._tell()
+
+    def __repr__(self) -> str:
+        return f"<Record of {self.group!r}, data {self._data!r}>"
 
     def packed(self) -> bytearray:
         """The bytes that follow the header."""

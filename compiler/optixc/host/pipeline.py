@@ -307,6 +307,10 @@ class Pipeline:
             raise InvalidOperationError("this pipeline was destroyed")
         raise InvalidDeviceContextError("this pipeline's context is gone")
 
+    def __repr__(self) -> str:
+        lanes = f"{self._report.lanes} lane{'s' if self._report.lanes > 1 else ''}"
+        return f"<Pipeline of {' '.join(self.programs)}, {lanes}{'' if self._pipeline is not None else ', destroyed'}>"
+
     def __del__(self) -> None:
         if getattr(self, "_pipeline", None) is not None and not sys.is_finalizing():
             self.destroy()

@@ -72,6 +72,10 @@ class ShaderBindingTable:
         made._ray_types, made._material_count = names, len(materials)
         return made
 
+    def __repr__(self) -> str:
+        counts = f"{len(self.miss)} miss, {len(self.hitgroup)} hitgroup, {len(self.callables)} callables"
+        return f"<ShaderBindingTable {self.raygen.group!r}, {counts}{', exception' if self.exception is not None else ''}>"
+
     @property
     def stride(self) -> int:
         """The sbt_stride of traces: the number of ray types."""

@@ -9,7 +9,10 @@ from __future__ import annotations
 import ctypes
 import threading
 import weakref
+from collections.abc import Iterable
 from typing import Any
+
+import numpy as np
 
 from optixc.errors import InvalidValueError
 from optixc.frontend.checked import FunctionInstance
@@ -23,7 +26,7 @@ _lock = threading.RLock()
 
 
 def interpret(
-    pipeline: Pipeline, params: Any, sbt: ShaderBindingTable, size: int | tuple[int, ...], index: int | tuple[int, ...]
+    pipeline: Pipeline, params: Any, sbt: ShaderBindingTable, size: int | Iterable[int], index: int | Iterable[int]
 ) -> None:
     """Runs launch index `index` of a launch of `size` (one to three numbers each) in Python; arrays in `params` are written.
 
@@ -75,8 +78,8 @@ def _machine(pipeline: Pipeline) -> Machine:
     return Machine(numbers, params, depth, pipeline.exception_flags, pipeline.uses_motion, pipeline.uses_micromaps)
 
 
-def _three(numbers: int | tuple[int, ...], what: str, missing: int = 1) -> tuple[int, ...]:
-    given = (numbers,) if isinstance(numbers, int) else tuple(numbers)
-    if not 1 <= len(given) <= 3 or not all(isinstance(one, int) and one >= 0 for one in given):
+def _three(numbers: int | Iterable[int], what: str, missing: int = 1) -> tuple[int, ...]:
+    given = tuple(numbers) if isinstance(numbers, Iterable) else (numbers,)
+    if not 1 <= len(given) <= 3 or not all(isinstance(one, int | np.integer) and one >= 0 for one in given):
         raise InvalidValueError(f"{what} takes one to three whole numbers, not {numbers!r}")
-    return (*given, *(missing,) * (3 - len(given)))
+    return (*map(int, given), *(missing,) * (3 - len(given)))
