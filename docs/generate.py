@@ -1,4 +1,5 @@
-"""Writes what follows from tables of the compiler: stubs for type checkers, tables of the language reference.
+"""Writes what follows from tables of the compiler: stubs for type checkers, tables of the language reference, the page of the shader
+library.
 
 `python docs/generate.py` writes the files, `--check` only says which are not up to date.
 """
@@ -9,6 +10,7 @@ import sys
 from pathlib import Path
 
 from device_stub import device_functions_stub, vector_types_stub
+from stdlib_page import stdlib_page
 from tables import device_functions_page, errors_page
 
 _DOCS = Path(__file__).resolve().parent
@@ -22,6 +24,7 @@ def generated() -> dict[Path, str]:
         _PACKAGE / "host" / "vector_types.pyi": vector_types_stub(),
         _DOCS / "language" / "device-functions.md": device_functions_page(),
         _DOCS / "language" / "errors.md": errors_page(),
+        _DOCS / "language" / "stdlib.md": stdlib_page(),
     }
 
 
