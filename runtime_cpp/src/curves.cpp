@@ -1,6 +1,7 @@
 // Round curves by Embree's own: linear ones with spherical ends, the others as swept circles that are open at the ends, or closed by discs.
 // Quadratic B-splines have no Embree type: each segment becomes a Bezier curve of the same shape.
 #include "curve_points.h"
+#include "filter_lanes.h"
 
 #include <cmath>
 #include <cstdint>
@@ -16,10 +17,11 @@ constexpr float beforeEnd = 0.99999988f;
 void keepOffEnds(const RTCFilterFunctionNArguments* arguments)
 {
     enum { U = 3 };
-    dropBackFaces(arguments);
     float* const u = static_cast<float*>(arguments->hit) + U * arguments->N;
-    for (unsigned lane = 0; lane < arguments->N; ++lane)
-        if (arguments->valid[lane] == -1) u[lane] = std::fmin(std::fmax(u[lane], afterStart), beforeEnd);
+    eachValidLane(*arguments, [&](unsigned lane) {
+        arguments->valid[lane] = isEntered(*arguments, lane) ? -1 : 0;
+        u[lane] = std::fmin(std::fmax(u[lane], afterStart), beforeEnd);
+    });
 }
 
 class Curves final : public Shape {

@@ -1,6 +1,7 @@
 // Spheres: Embree's points of type sphere. OptiX offers only the hit where the ray enters; the sign of a radius does not count.
 #include "array.h"
 #include "error.h"
+#include "filter_lanes.h"
 #include "own_shape.h"
 #include "shape.h"
 
@@ -49,31 +50,39 @@ double entryDistance(const Point4& sphere, const RTCFilterFunctionNArguments& ar
     return (distanceSquared - radius * radius) / (along + half);
 }
 
+// Corrects the distance of a hit that is nearer to the ray's origin than the radius; false if it is before the ray's interval then.
+bool correctDistance(const RTCFilterFunctionNArguments& arguments, unsigned lane)
+{
+    const auto& view = *static_cast<const OxrtGeometry*>(arguments.geometryUserPtr);
+    std::uint32_t primitive;
+    std::memcpy(&primitive, &fieldOf(arguments.hit, PRIMITIVE, arguments.N, lane), sizeof primitive);
+    const KeyPosition at = keyPosition(view.keyCount, fieldOf(arguments.ray, TIME, arguments.N, lane));
+    const auto* sphere = reinterpret_cast<const Point4*>(view.vertices) + primitive + view.vertexCount * at.key;
+    const Point4 now = at.fraction == 0 ? *sphere : *sphere * (1 - at.fraction) + sphere[view.vertexCount] * at.fraction;
+    const auto entry = static_cast<float>(entryDistance(now, arguments, lane));
+    if (!(entry >= fieldOf(arguments.ray, TNEAR, arguments.N, lane))) return false;
+    fieldOf(arguments.ray, TFAR, arguments.N, lane) = entry;
+    return true;
+}
+
+// The normal is the way from the centre to the hit, as long as the radius.
 void enterSpheres(const RTCFilterFunctionNArguments* arguments)
 {
-    dropBackFaces(arguments);
-    const auto& view = *static_cast<const OxrtGeometry*>(arguments->geometryUserPtr);
-    for (unsigned lane = 0; lane < arguments->N; ++lane) {
-        if (arguments->valid[lane] != -1) continue;
-        std::uint32_t primitive;
-        std::memcpy(&primitive, &fieldOf(arguments->hit, PRIMITIVE, arguments->N, lane), sizeof primitive);
-        const auto* sphere = reinterpret_cast<const Point4*>(view.vertices) + primitive;
-        float& t = fieldOf(arguments->ray, TFAR, arguments->N, lane);
-        float lengthSquared = 0;
+    const unsigned width = arguments->N;
+    eachValidLane(*arguments, [&](unsigned lane) {
+        const float* const direction = &fieldOf(arguments->ray, DIRECTION, width, lane);
+        const float* const normal = &fieldOf(arguments->hit, NORMAL, width, lane);
+        const float t = fieldOf(arguments->ray, TFAR, width, lane);
+        float cosine = 0, lengthSquared = 0, radiusSquared = 0;
         for (unsigned axis = 0; axis < 3; ++axis) {
-            const float d = fieldOf(arguments->ray, DIRECTION + axis, arguments->N, lane);
+            const float d = direction[axis * width];
+            const float n = normal[axis * width];
+            cosine += d * n;
             lengthSquared += d * d;
+            radiusSquared += n * n;
         }
-        if (!(t * t * lengthSquared < sphere->w * sphere->w)) continue;
-        const KeyPosition at = keyPosition(view.keyCount, fieldOf(arguments->ray, TIME, arguments->N, lane));
-        sphere += view.vertexCount * at.key;
-        const Point4 now = at.fraction == 0 ? *sphere : *sphere * (1 - at.fraction) + sphere[view.vertexCount] * at.fraction;
-        const auto entry = static_cast<float>(entryDistance(now, *arguments, lane));
-        if (entry >= fieldOf(arguments->ray, TNEAR, arguments->N, lane))
-            t = entry;
-        else
-            arguments->valid[lane] = 0;
-    }
+        if (!(cosine < 0) || (t * t * lengthSquared < radiusSquared && !correctDistance(*arguments, lane))) arguments->valid[lane] = 0;
+    });
 }
 
 class Spheres final : public Shape {
@@ -150,19 +159,9 @@ std::unique_ptr<Shape> makeSpheres(const OxrtBuildInput& input)
     return std::make_unique<Spheres>(input);
 }
 
-// Without branches, so that the lanes of a packet go together; lanes that are not valid stay so.
 void dropBackFaces(const RTCFilterFunctionNArguments* arguments)
 {
-    enum { DIRECTION = 4, NORMAL = 0 };
-    const unsigned width = arguments->N;
-    const float* const direction = reinterpret_cast<const float*>(arguments->ray) + DIRECTION * width;
-    const float* const normal = reinterpret_cast<const float*>(arguments->hit) + NORMAL * width;
-    int* const valid = arguments->valid;
-    for (unsigned lane = 0; lane < width; ++lane) {
-        const float cosine = direction[lane] * normal[lane] + direction[width + lane] * normal[width + lane] +
-                             direction[2 * width + lane] * normal[2 * width + lane];
-        valid[lane] = cosine < 0 ? valid[lane] : 0;
-    }
+    eachValidLane(*arguments, [&](unsigned lane) { arguments->valid[lane] = isEntered(*arguments, lane) ? -1 : 0; });
 }
 
 void setFilter(const EmbreeLibrary& embree, RTCGeometry geometry, RTCFilterFunctionN filter)
