@@ -32,6 +32,7 @@ from optixc.version import __version__
 EXIT_SHADER, EXIT_USAGE, EXIT_TOOLCHAIN = 1, 2, 3
 EXIT_INTERRUPTED = 130  # as shells say it: 128 and the number of SIGINT
 EMIT_FORMS = ("ast", "types", "ir", "cpp", "asm", "header")
+_BEFORE_PASSES = ("ast", "types")
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -116,6 +117,8 @@ def _parser() -> argparse.ArgumentParser:
 def _compile(chosen: argparse.Namespace) -> None:
     if not chosen.shader.is_file():
         raise FileIoError(f"{chosen.shader} is not a file")
+    if chosen.print_after is not None and chosen.emit in _BEFORE_PASSES:
+        raise InvalidValueError(f"--print-after prints IR, which --emit {chosen.emit} does not make; leave one of them out")
     if chosen.emit == "ast":
         print(ast.dump(parse_tree(chosen.shader), indent=2))
         return

@@ -11,7 +11,6 @@ def __raygen__a():
     f = getattr(1, "x")  # E[OX406]: name the field
     for i in enumerate(3):  # E[OX401]: a loop runs over range(...) only
         pass
-    g = min(1, 2, 3)  # E[OX305]: min() takes two arguments
     h = pow(2, 3, 5)  # E[OX305]: pow() takes two arguments
     abs = 3
     k = abs(1)  # E[OX319]: `abs` is a local here

@@ -19,6 +19,12 @@ class NoType:
 
 
 @ox.struct
+class _Private:
+    __x: float  # E[OX202]: gives the field `__x` the name `_Private__x`
+    __init__: float
+
+
+@ox.struct
 class Empty:  # E[OX202]: has no fields
     pass
 

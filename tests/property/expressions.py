@@ -95,7 +95,14 @@ class Expressions:
         """An operand beside one that has the type: literals are welcome."""
         if type_ in SCALARS and type_ != "bool" and self.random.random() < 0.25:
             return literal(self.random, type_, nonzero)
+        if is_integer(type_) and not nonzero and self.random.random() < 0.08:
+            return self._weak_shift()
         return self.expression(type_, depth)
+
+    def _weak_shift(self) -> str:
+        """Operators on literals whose type comes from the other operand."""
+        shift = f"({self.random.choice(('1', '3', 'Bits.BOTH'))} << ({self.leaf(self.random.choice(('int32', 'uint32')))} & 31))"
+        return self.random.choice((shift, shift, f"~{shift}", f"({shift} - 1)", f"({shift} | (1 << {self.random.randrange(9)}))"))
 
     def condition(self, depth: int) -> str:
         """What an `if` may ask."""

@@ -103,6 +103,9 @@ def test_print_after_a_pass(shader: Path, capsys: pytest.CaptureFixture[str]) ->
     assert "3.0" in capsys.readouterr().out
     assert cli.main(["shader.py", "--print-after", "nothing"]) == cli.EXIT_USAGE
     assert "specialize" in capsys.readouterr().err
+    for form in ("ast", "types"):
+        assert cli.main(["shader.py", "--print-after", "specialize", "--emit", form]) == cli.EXIT_USAGE
+        assert f"--emit {form}" in capsys.readouterr().err
 
 
 def test_errors_of_the_shader(shader: Path, capsys: pytest.CaptureFixture[str]) -> None:

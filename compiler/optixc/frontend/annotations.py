@@ -62,8 +62,8 @@ def type_of_symbol(scope: Declarations, symbol: Symbol | None, diagnostics: Diag
             return names.TYPE_NAMES.get(name)
         case StructSymbol(type=type_):
             return type_
-        case EnumSymbol():
-            return t.INT32
+        case EnumSymbol(is_flag=is_flag):
+            return t.UINT32 if is_flag else t.INT32
         case ConstantSymbol(node=ast.Subscript() as inner, scope=owner):
             return resolve_type(owner, inner, diagnostics)
     return None

@@ -8,7 +8,7 @@ from functools import cache
 from optixc import enums
 from optixc.frontend import builtin_names as names
 from optixc.frontend.symbols import BuiltinName, EnumSymbol, FileSymbol, OptixNamespace, PythonName, SkippedName, Symbol, ValueSymbol
-from optixc.frontend.weak import WEAK_FLOAT, WEAK_INT
+from optixc.frontend.weak import WEAK_FLOAT, member_type
 from optixc.ir.intrinsic_rows import INTRINSICS
 
 
@@ -28,8 +28,13 @@ def builtin_symbol(name: str) -> Symbol | None:
         return ValueSymbol(WEAK_FLOAT, names.MATH_CONSTANTS[name])
     enum = getattr(enums, name, None)
     if isinstance(enum, type) and issubclass(enum, IntEnum | IntFlag):
-        return EnumSymbol(name, {member: int(value) for member, value in enum.__members__.items()})
+        return enum_symbol(enum)
     return None
+
+
+def enum_symbol(enum: type[IntEnum | IntFlag]) -> EnumSymbol:
+    """A live enum class."""
+    return EnumSymbol(enum.__name__, {member: int(value) for member, value in enum.__members__.items()}, issubclass(enum, IntFlag))
 
 
 def python_builtin(name: str) -> Symbol | None:
@@ -46,8 +51,8 @@ def attribute_of(symbol: Symbol, name: str) -> Symbol | None:
             return builtin_symbol(name) or (PythonName("optixc", name) if name == "stdlib" else None)
         case FileSymbol(declarations=declarations):
             return declarations.lookup(name)
-        case EnumSymbol(members=members):
-            return ValueSymbol(WEAK_INT, members[name]) if name in members else None
+        case EnumSymbol(members=members, is_flag=is_flag):
+            return ValueSymbol(member_type(is_flag, members), members[name]) if name in members else None
         case PythonName(module="math", name=""):
             if name in names.MATH_CONSTANTS:
                 return ValueSymbol(WEAK_FLOAT, names.MATH_CONSTANTS[name])

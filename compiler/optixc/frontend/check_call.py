@@ -48,8 +48,8 @@ def check_call(c: Context, node: ast.Call) -> ExprInfo:
         case ConstantSymbol(node=ast.Subscript() as generic, scope=scope):
             target = resolve_type(scope, generic, c.diagnostics)
             return ExprInfo(INVALID) if target is None else construct_type(c, node, target)
-        case EnumSymbol():
-            return construct_type(c, node, t.INT32)
+        case EnumSymbol(is_flag=is_flag):
+            return construct_type(c, node, t.UINT32 if is_flag else t.INT32)
         case SkippedName(reason=reason, span=span, code=code):
             place = f", see {span}" if span is not None else ""
             text = ast.unparse(node.func)

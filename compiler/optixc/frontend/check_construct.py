@@ -141,6 +141,8 @@ def _component(c: Context, argument: ast.expr, vector: t.Vector) -> bool:
 def _construct_matrix(c: Context, node: ast.Call, target: t.Matrix) -> ExprInfo:
     row = t.Vector(t.FLOAT32, target.columns)
     writes = _writes(c, node)
+    if not node.args:
+        return ExprInfo(target, use=ConstructUse(target, (DefaultArgument(0.0, t.FLOAT32),) * (target.rows * target.columns)))
     if len(node.args) == target.rows:
         fits = [c.coerce(argument, row, "a row") for argument in node.args]
     elif len(node.args) == target.rows * target.columns:

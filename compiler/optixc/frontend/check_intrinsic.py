@@ -22,11 +22,13 @@ def check_intrinsic(c: Context, node: ast.Call, name: str) -> ExprInfo:
     """A call of `ox.name`."""
     if name == "pow" and len(node.args) == 3:
         return c.error("OX305", node, "pow() takes two arguments", "write (x ** y) % z")
+    if name in ("min", "max") and len(node.args) > 2 and not any(isinstance(argument, ast.Starred) for argument in node.args):
+        # min(a, b, c) is min(min(a, b), c), in the tree as well: all later stages know two arguments.
+        *first, last = node.args
+        node.args = [ast.copy_location(ast.Call(node.func, first, []), node), last]
     if name in OVERLOADS:
         check_written(c, node)
     row = _choose_row(c, node, name)
-    if name in ("min", "max") and len(node.args) > 2:
-        return c.error("OX305", node, f"{name}() takes two arguments, here are {len(node.args)}", f"write {name}(a, {name}(b, c))")
     optional = [parameter.name for parameter in row.parameters if parameter.default is not None]
     bound = bind_arguments(c, node, name, [parameter.name for parameter in row.parameters], optional)
     if name not in OVERLOADS:
@@ -129,7 +131,7 @@ def _convert_arguments(c: Context, node: ast.Call, row: Intrinsic, bound: list[a
                 return None
         elif joined is not None:
             c.info(argument).converted = joined
-            if isinstance(argument, ast.IfExp) and is_weak(c.info(argument).type):
+            if c.info(argument).constant is None and is_weak(c.info(argument).type):
                 c.coerce(argument, element or joined, what)
                 c.info(argument).converted = joined
     if isinstance(row.result, Generic):

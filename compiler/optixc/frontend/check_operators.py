@@ -9,7 +9,19 @@ from optixc.frontend.checked import ExprInfo
 from optixc.frontend.context import Context, describe
 from optixc.frontend.conversions import common_type, weak_of
 from optixc.frontend.fold import FoldError, fold_binary, fold_comparison, fold_unary
-from optixc.frontend.weak import INVALID, CheckType, ConstantValue, Invalid, WeakInt, default_type, is_float, is_integer, is_number, is_weak
+from optixc.frontend.weak import (
+    INVALID,
+    WEAK_INT,
+    CheckType,
+    ConstantValue,
+    Invalid,
+    WeakInt,
+    default_type,
+    is_float,
+    is_integer,
+    is_number,
+    is_weak,
+)
 from optixc.ir import types as t
 
 OPERATOR_TEXT: dict[type[ast.AST], str] = {
@@ -41,6 +53,8 @@ OPERATOR_TEXT: dict[type[ast.AST], str] = {
 _BITWISE = (ast.BitAnd, ast.BitOr, ast.BitXor)
 _SHIFTS = (ast.LShift, ast.RShift)
 _DIVISIONS = (ast.Div, ast.FloorDiv, ast.Mod)
+_CLOSED = (ast.Add, ast.Sub, ast.Mult, ast.FloorDiv, ast.Mod, ast.BitAnd, ast.BitOr, ast.BitXor)
+"""Operators that give integers without a type of their own where both operands are such: `(1 << n) - 1`."""
 
 
 def element_of(type_: CheckType) -> CheckType:
@@ -58,9 +72,12 @@ def check_unary(c: Context, node: ast.UnaryOp) -> ExprInfo:
     if isinstance(operand.type, Invalid):
         return operand
     if operand.constant is not None and is_weak(operand.type):
-        value = fold_unary(node.op, operand.constant)
+        flag_bits = operand.type.flag_bits if isinstance(operand.type, WeakInt) else 0
+        value = fold_unary(node.op, operand.constant, flag_bits)
         if value is not None:
-            return ExprInfo(operand.type, constant=value)
+            return ExprInfo(operand.type if isinstance(node.op, ast.Invert) else weak_of(value), constant=value)
+    if isinstance(operand.type, WeakInt):
+        return ExprInfo(operand.type, writes=operand.writes)
     element = element_of(operand.type)
     fits = is_integer(element) if isinstance(node.op, ast.Invert) else is_number(element)
     if isinstance(operand.type, t.Matrix) and not isinstance(node.op, ast.Invert):
@@ -83,10 +100,15 @@ def check_binary(c: Context, node: ast.BinOp) -> ExprInfo:
     if isinstance(node.op, _DIVISIONS) and right.constant == 0 and not isinstance(right.constant, bool):
         return c.error("OX314", node.right, "this divides by the constant zero", "Python would raise ZeroDivisionError")
     writes = left.writes or right.writes
-    for operand, info in ((node.left, left), (node.right, right)):
-        if is_weak(info.type) and info.constant is None:
+    if isinstance(left.type, WeakInt) and isinstance(right.type, WeakInt) and isinstance(node.op, _CLOSED):
+        return ExprInfo(WEAK_INT, writes=writes)
+    for operand, info, other in ((node.left, left, right), (node.right, right, left)):
+        joins = is_integer(info.type) and is_integer(element_of(other.type)) and not isinstance(node.op, ast.Div | ast.Pow)
+        if is_weak(info.type) and info.constant is None and not joins:
             c.settle(operand)
     result = _binary_type(c, node)
+    if isinstance(node.op, _SHIFTS) and isinstance(left.type, WeakInt) and isinstance(result, t.Scalar):
+        return ExprInfo(left.type, writes=writes)
     return ExprInfo(INVALID if result is None else result, writes=writes)
 
 
@@ -99,7 +121,8 @@ def _fold(c: Context, node: ast.BinOp, left: ExprInfo, right: ExprInfo) -> ExprI
         return c.error(error.code, node, str(error))
     if value is None:
         return None
-    return ExprInfo(weak_of(value), constant=value)
+    flags = [info.type for info in (left, right) if isinstance(info.type, WeakInt) and info.type.flag_bits]
+    return ExprInfo(flags[0] if flags and isinstance(node.op, _BITWISE) else weak_of(value), constant=value)
 
 
 def _binary_type(c: Context, node: ast.BinOp) -> t.Type | None:
@@ -128,12 +151,22 @@ def _binary_type(c: Context, node: ast.BinOp) -> t.Type | None:
             c.error("OX313", node.right, "an integer to a negative power is not an integer", "write a float base, e.g. 2.0 ** -1")
             return None
     assert isinstance(element, t.Scalar)
+    if isinstance(node.op, ast.BitAnd) and element.kind is t.ScalarKind.UINT:
+        _keep_bits(c, node, element.bits)
     result = t.Vector(element, common.size) if isinstance(common, t.Vector) else element
     for operand, type_ in ((node.left, left), (node.right, right)):
         target = result if isinstance(type_, t.Vector) else element
         if not _convert_operand(c, operand, target):
             return None
     return result
+
+
+def _keep_bits(c: Context, node: ast.BinOp, bits: int) -> None:
+    """`flags & ~4`: of a negative literal, whose bits go on without end, an unsigned number keeps as many as it has itself."""
+    for operand in (node.left, node.right):
+        info = c.info(operand)
+        if isinstance(info.type, WeakInt) and isinstance(info.constant, int) and -(1 << bits) <= info.constant < 0:
+            info.constant &= (1 << bits) - 1
 
 
 def _convert_operand(c: Context, node: ast.expr, target: t.Type) -> bool:
@@ -160,7 +193,7 @@ def _shift_type(c: Context, node: ast.BinOp, left: CheckType, right: CheckType) 
             return None
     elif element_of(right) not in (t.INT32, t.UINT32):
         return _refuse_types(c, node, left, right, "a shift count is int32 or uint32")
-    return c.settle(node.left)
+    return default_type(left) if is_weak(left) else c.settle(node.left)
 
 
 def _matrix_type(c: Context, node: ast.BinOp, left: CheckType, right: CheckType) -> t.Type | None:
@@ -274,9 +307,7 @@ def _common_of(c: Context, node: ast.Compare, operands: Sequence[ast.expr]) -> t
             return None
         common = met
     if is_weak(common):
-        for operand in operands:
-            c.settle(operand)
-        common = t.FLOAT32 if is_float(common) else t.INT32
+        common = default_type(common)
     assert not isinstance(common, Invalid) and not is_weak(common)
     ordered = any(not isinstance(op, ast.Eq | ast.NotEq) for op in node.ops)
     comparable = (t.Scalar,) if ordered else (t.Scalar, t.Vector, t.Traversable, t.Texture)

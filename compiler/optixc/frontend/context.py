@@ -17,7 +17,7 @@ from optixc.frontend.declarations import Declarations
 from optixc.frontend.environment import Environment, Way
 from optixc.frontend.source_file import Diagnostics, SourceFile
 from optixc.frontend.symbols import ConstantSymbol, FunctionSymbol
-from optixc.frontend.weak import INVALID, CheckType, Invalid, default_type, is_weak, widened
+from optixc.frontend.weak import INVALID, CheckType, Invalid, default_type, is_integer, is_weak, widened
 from optixc.ir import types as t
 from optixc.ir.nodes import Local
 from optixc.ir.programs import ProgramKind
@@ -123,6 +123,8 @@ class Context:
             return (
                 self.coerce(node.body, value_type, what) and self.coerce(node.orelse, value_type, what) and self._convert(info, value_type)
             )
+        if is_weak(info.type) and info.constant is None and isinstance(node, ast.BinOp | ast.UnaryOp):
+            return self._coerce_operation(node, info, value_type, what)
         if isinstance(node, ast.Tuple) and isinstance(value_type, t.Tuple | t.Vector):
             items = value_type.items if isinstance(value_type, t.Tuple) else (value_type.element,) * value_type.size
             fits_all = [self.coerce(item, target_item, what) for item, target_item in zip(node.elts, items, strict=True)]
@@ -131,6 +133,17 @@ class Context:
         if info.constant is not None and isinstance(target, t.Scalar) and not self._constant_fits(node, info, target, what):
             return False
         return self._convert(info, value_type)
+
+    def _coerce_operation(self, node: ast.BinOp | ast.UnaryOp, info: ExprInfo, target: t.Type, what: str | ast.expr) -> bool:
+        """Operators on literals, such as `1 << n`: calculated in the integer type that is wanted, for all others in their own."""
+        type_ = target if is_integer(target) else default_type(info.type)
+        operands = [node.operand] if isinstance(node, ast.UnaryOp) else [node.left]
+        if isinstance(node, ast.BinOp) and not isinstance(node.op, ast.LShift | ast.RShift):
+            operands.append(node.right)
+        if not all(self.coerce(operand, type_, what) for operand in operands):
+            return False
+        info.type = type_
+        return type_ == target or self._convert(info, target)
 
     def _convert(self, info: ExprInfo, target: t.Type) -> bool:
         info.converted = target

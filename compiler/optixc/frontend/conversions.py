@@ -73,6 +73,8 @@ def common_scalar(left: CheckType, right: CheckType) -> CheckType | None:
     """The type in which two numbers meet, or None: int32 and uint32 do not, because Python's answer is neither."""
     if left == right:
         return left if not isinstance(left, t.Scalar) or left.kind is not t.ScalarKind.BOOL else None
+    if isinstance(left, WeakInt) and isinstance(right, WeakInt):
+        return left if left.flag_bits else right
     if is_weak(left) and is_weak(right):
         return WEAK_FLOAT
     if is_weak(right):

@@ -76,6 +76,10 @@ class _Struct:
         if any(field.name == name for field in self.fields):
             self._error(statement, f"field `{name}` is defined twice", "")
             return
+        if name.startswith("__") and not name.endswith("__"):
+            python_name = f"_{self.node.name.lstrip('_')}{name}"
+            message = f"Python gives the field `{name}` the name `{python_name}` outside of the class"
+            self._error(statement, message, "begin it with one underscore")
         type_ = resolve_type(self.scope, annotation, self.diagnostics)
         if type_ is None:
             type_ = t.VOID
@@ -161,7 +165,7 @@ def _declare_enum(scope: Declarations, node: ast.ClassDef, diagnostics: Diagnost
                 continue
             case _:
                 diagnostics.add(source, "OX208", statement, "an enum in a shader file holds members only", "write `NAME = integer` lines")
-    return EnumSymbol(node.name, members)
+    return EnumSymbol(node.name, members, is_flag)
 
 
 def _enum_value(scope: Declarations, node: ast.expr, members: dict[str, int], is_flag: bool) -> int | None:

@@ -27,8 +27,8 @@ class FoldError(Exception):
         super().__init__(message)
 
 
-def fold_unary(op: ast.unaryop, value: ConstantValue) -> ConstantValue | None:
-    """`op value`, or None where Python refuses."""
+def fold_unary(op: ast.unaryop, value: ConstantValue, flag_bits: int = 0) -> ConstantValue | None:
+    """`op value`, or None where Python refuses; `~` of a member of an `IntFlag` gives the other bits of the class, `flag_bits`."""
     match op:
         case ast.USub():
             return -value
@@ -37,7 +37,7 @@ def fold_unary(op: ast.unaryop, value: ConstantValue) -> ConstantValue | None:
         case ast.Not():
             return not value
         case ast.Invert() if isinstance(value, int) and not isinstance(value, bool):
-            return ~value
+            return flag_bits & ~value if flag_bits else ~value
     return None
 
 

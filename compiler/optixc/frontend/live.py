@@ -20,14 +20,13 @@ from typing import Any
 import numpy as np
 
 from optixc.frontend.builtin_names import SCALAR_TYPES, VECTOR_TYPES
-from optixc.frontend.builtin_symbols import builtin_symbol
+from optixc.frontend.builtin_symbols import builtin_symbol, enum_symbol
 from optixc.frontend.conversions import weak_of
 from optixc.frontend.declarations import Declarations
 from optixc.frontend.declare import Declarer
 from optixc.frontend.parse import ParsedFile, parse_text
 from optixc.frontend.source_file import Diagnostics, SourceFile
 from optixc.frontend.symbols import (
-    EnumSymbol,
     FunctionSymbol,
     OptixNamespace,
     ParamsSymbol,
@@ -36,6 +35,7 @@ from optixc.frontend.symbols import (
     ValueSymbol,
     VectorSymbol,
 )
+from optixc.frontend.weak import member_type
 from optixc.source import Span
 
 
@@ -180,12 +180,14 @@ class _Captured:
         match value:
             case ModuleType() if value.__name__ == "optixc":
                 return OptixNamespace()
+            case enum.IntFlag():
+                return ValueSymbol(member_type(True, enum_symbol(type(value)).members), int(value))
             case bool() | int() | float():
-                return ValueSymbol(weak_of(value), int(value) if isinstance(value, enum.IntEnum | enum.IntFlag) else value)
+                return ValueSymbol(weak_of(value), int(value) if isinstance(value, enum.IntEnum) else value)
             case np.generic() if value.dtype.name in SCALAR_TYPES:
                 return ValueSymbol(SCALAR_TYPES[value.dtype.name], value.item())
             case type() if issubclass(value, enum.IntEnum | enum.IntFlag):
-                return EnumSymbol(value.__name__, {name: int(member) for name, member in value.__members__.items()})
+                return enum_symbol(value)
         shown = type(value).__name__
         if shown in VECTOR_TYPES and type(value).__module__.startswith("optixc"):
             components: Any = value

@@ -101,6 +101,7 @@ class EnumSymbol:
 
     name: str
     members: dict[str, int]
+    is_flag: bool = False
 
 
 @dataclass(frozen=True, eq=False)

@@ -6,7 +6,7 @@ already has a diagnostic, so that one mistake is told once.
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from typing import TypeGuard, cast
 
@@ -15,7 +15,13 @@ from optixc.ir import types as t
 
 @dataclass(frozen=True)
 class WeakInt:
-    """An integer literal, or operators on such."""
+    """An integer literal, or operators on such.
+
+    `flag_bits` are all bits of an `IntFlag` class whose member this is, 0 otherwise: flags become uint32 where nothing else gives them a
+    type, and `~` stays within the bits of the class, as in Python.
+    """
+
+    flag_bits: int = 0
 
     def __str__(self) -> str:
         return "int literal"
@@ -46,6 +52,13 @@ CheckType = t.Type | WeakInt | WeakFloat | Invalid
 ConstantValue = bool | int | float
 
 
+def member_type(is_flag: bool, members: Mapping[str, int]) -> WeakInt:
+    """The type of an enum's members."""
+    highest = max((value.bit_length() for value in members.values()), default=0)
+    fits = is_flag and highest <= 32 and all(value >= 0 for value in members.values())
+    return WeakInt((1 << max(highest, 1)) - 1) if fits else WEAK_INT
+
+
 def is_weak(type_: CheckType) -> TypeGuard[Weak]:
     """Whether it is the type of a literal."""
     return isinstance(type_, WeakInt | WeakFloat)
@@ -67,9 +80,9 @@ def is_float(type_: CheckType) -> bool:
 
 
 def default_type(type_: CheckType) -> t.Type:
-    """The type that a value gets where nothing else says one: int32 and float32 for literals, also inside tuples."""
+    """The type that a value gets where nothing else says one: int32 and float32 for literals, uint32 for flags, also inside tuples."""
     if isinstance(type_, WeakInt):
-        return t.INT32
+        return t.UINT32 if type_.flag_bits else t.INT32
     if isinstance(type_, WeakFloat):
         return t.FLOAT32
     if isinstance(type_, Invalid):
