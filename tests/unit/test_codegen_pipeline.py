@@ -20,9 +20,10 @@ from ir_samples import (
     trace,
 )
 
-from optixc.codegen.cpp_pipeline import emit, recursive_helpers, structs_of
+from optixc.codegen.cpp_pipeline import emit, structs_of
 from optixc.codegen.declarations import declarations
 from optixc.codegen.header import emit_header
+from optixc.codegen.helper_calls import recursive_helpers
 from optixc.codegen.needs import needs_of_pipeline
 from optixc.codegen.program_classes import accepts, known_flags, program_classes, trace_depth
 from optixc.ir import nodes as n

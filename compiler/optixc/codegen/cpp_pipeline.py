@@ -11,6 +11,7 @@ from optixc.codegen.cpp_dispatch import Dispatch
 from optixc.codegen.cpp_scalar import ScalarFunction
 from optixc.codegen.cpp_signatures import Signatures
 from optixc.codegen.cpp_types import TypeNames, structs_within
+from optixc.codegen.helper_calls import callees_first, recursive_helpers
 from optixc.codegen.names import Scope, string_literal
 from optixc.codegen.needs import needs_of_pipeline, options_of
 from optixc.codegen.program_classes import program_classes, traces_of
@@ -19,7 +20,7 @@ from optixc.ir.layout import size_of
 from optixc.ir.nodes import Function, ParameterRole, Pipeline
 from optixc.ir.programs import ProgramKind
 from optixc.ir.types import Struct
-from optixc.ir.walk import called_helpers, expressions
+from optixc.ir.walk import expressions
 from optixc.passes.callables import CallableSignature, signatures_called
 from optixc.passes.features import Features
 from optixc.version import __version__
@@ -185,37 +186,3 @@ def record_structs(pipeline: Pipeline) -> list[Struct]:
     """The structs of SBT record data, in order of the programs."""
     records = (p.local.type for program in pipeline.programs for p in program.parameters if p.role is ParameterRole.RECORD)
     return list(dict.fromkeys(record for record in records if isinstance(record, Struct)))
-
-
-def recursive_helpers(helpers: tuple[Function, ...]) -> set[str]:
-    """Names of helpers that can call themselves, directly or not: these need a declaration before their definition."""
-    calls = {helper.name: set(called_helpers(helper.body)) for helper in helpers}
-    reach = {name: set(callees) for name, callees in calls.items()}
-    changed = True
-    while changed:
-        changed = False
-        for name, found in reach.items():
-            wider = found.union(*(reach[callee] for callee in found)) if found else found
-            if wider != found:
-                reach[name] = wider
-                changed = True
-    return {name for name, found in reach.items() if name in found}
-
-
-def callees_first(helpers: tuple[Function, ...]) -> list[Function]:
-    """The helpers in their order, but each after those that it calls; members of a cycle in their order."""
-    by_name = {helper.name: helper for helper in helpers}
-    ordered: dict[str, Function] = {}
-    entered: set[str] = set()
-
-    def visit(helper: Function) -> None:
-        if helper.name in entered:
-            return
-        entered.add(helper.name)
-        for callee in called_helpers(helper.body):
-            visit(by_name[callee])
-        ordered[helper.name] = helper
-
-    for helper in helpers:
-        visit(helper)
-    return list(ordered.values())

@@ -9,6 +9,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from optixc.codegen.cpp_types import TypeNames
+from optixc.codegen.helper_calls import small_candidate_functions
 from optixc.codegen.names import Scope
 from optixc.codegen.needs import Needs
 from optixc.codegen.program_classes import ProgramClass
@@ -39,6 +40,7 @@ class Signatures:
         self._scope = scope
         self._types = types
         self._needs = needs
+        self._inlined = small_candidate_functions(pipeline)
         self._functions = {function.name: scope.name(_base_name(function)) for function in (*pipeline.programs, *pipeline.helpers)}
         self._classes = {
             payload: scope.name(f"{types.struct(payload)}Programs" if payload is not None else "NoPayloadPrograms") for payload in classes
@@ -116,8 +118,9 @@ class Signatures:
         hidden = self.hidden_parameters(function, names)
         parameters = [self.parameter(p, names, p.local.name in used) for p in function.parameters]
         template = "template <class Programs> " if self._needs[function.name].programs else ""
+        inline = "OXRT_INLINE " if function.name in self._inlined else ""
         result = self._types.name(function.result)
-        return f"{template}{result} {self.function(function.name)}({', '.join(hidden + parameters)})"
+        return f"{template}{inline}{result} {self.function(function.name)}({', '.join(hidden + parameters)})"
 
     def callee(self, name: str) -> str:
         """The function as a call names it, inside of a function that has its programs as a template argument."""

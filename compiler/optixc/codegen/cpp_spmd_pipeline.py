@@ -10,7 +10,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 from optixc.codegen.cpp_dispatch import FUNCTIONS, SLOTS
-from optixc.codegen.cpp_pipeline import PipelineFile, callees_first, structs_of
+from optixc.codegen.cpp_pipeline import PipelineFile, structs_of
 from optixc.codegen.cpp_scalar import ScalarFunction
 from optixc.codegen.cpp_signatures import used_parameters
 from optixc.codegen.cpp_spmd import LaneFunction
@@ -18,6 +18,7 @@ from optixc.codegen.cpp_spmd_clones import Clones
 from optixc.codegen.cpp_spmd_expr import PAYLOAD_GETTER, PAYLOAD_SETTER
 from optixc.codegen.cpp_spmd_types import WideTypes
 from optixc.codegen.cpp_types import word_count
+from optixc.codegen.helper_calls import callees_first
 from optixc.codegen.needs import EXCEPTION_FLAG_STACK_OVERFLOW, REPORT, options_of
 from optixc.codegen.program_classes import ProgramClass, callables_nest, payload_of, reachable_functions
 from optixc.ir.intrinsic_rows import INTRINSICS

@@ -39,7 +39,7 @@ struct ShadowPrograms : oxrt::NoPrograms {
 };
 
 #line 30 "shader.py"
-void stop_if_dark(oxrt::Ray& trace, const Shadow& shadow) {
+OXRT_INLINE void stop_if_dark(oxrt::Ray& trace, const Shadow& shadow) {
     if (shadow.light.x < 0.01f) {
         oxrt::terminateRay(trace);
         return;
@@ -62,7 +62,7 @@ void raygen_lights(OxrtThread& thread) {
 }
 
 #line 52 "shader.py"
-void anyhit_glass(oxrt::Ray& trace, Shadow& shadow, const Glass& glass) {
+OXRT_INLINE void anyhit_glass(oxrt::Ray& trace, Shadow& shadow, const Glass& glass) {
     shadow.hits = shadow.hits + 1;
     oxrt::float2 uv = oxrt::getTriangleBarycentrics(trace);
     if (uv.x + uv.y < glass.opacity) {

@@ -86,7 +86,7 @@ struct ShadowProgramsLanes : oxrt::NoLanePrograms {
 };
 
 #line 30 "shader.py"
-void stop_if_dark(oxrt::Ray& trace, const Shadow& shadow) {
+OXRT_INLINE void stop_if_dark(oxrt::Ray& trace, const Shadow& shadow) {
     if (shadow.light.x < 0.01f) {
         oxrt::terminateRay(trace);
         return;
@@ -94,7 +94,7 @@ void stop_if_dark(oxrt::Ray& trace, const Shadow& shadow) {
 }
 
 #line 52 "shader.py"
-void anyhit_glass(oxrt::Ray& trace, Shadow& shadow, const Glass& glass) {
+OXRT_INLINE void anyhit_glass(oxrt::Ray& trace, Shadow& shadow, const Glass& glass) {
     shadow.hits = shadow.hits + 1;
     oxrt::float2 uv = oxrt::getTriangleBarycentrics(trace);
     if (uv.x + uv.y < glass.opacity) {
