@@ -147,8 +147,11 @@ def _plain(type_: ParameterType) -> str:
 
 
 def _parameter(parameter: IntrinsicParameter, type_: str) -> str:
-    return f"{parameter.name}: {type_}" + (" = ..." if parameter.default is not None else "")
+    return f"{parameter.name}: {type_}" + (" = ..." if parameter.default is not None or parameter.optional else "")
 
+
+_ANY = frozenset({Generic.HANDLES, Generic.COOP_VEC, Generic.COOP_VEC_OR_NUMBER, Generic.COOP_VEC_TYPE, Generic.MEMORY})
+"""Parameters that type checkers take as they come."""
 
 _FORMS: dict[Generic, tuple[str, ...]] = {
     Generic.FLOATS: ("float", "_V"),
@@ -170,7 +173,7 @@ def _signatures(row: Intrinsic) -> list[str]:
         several = len(row.parameters) > 1 and form == "_V" and row.parameters[0].type is not Generic.FLOAT_VECTOR
         texts = []
         for parameter in row.parameters:
-            if parameter.type is Generic.HANDLES:
+            if parameter.type in _ANY:
                 texts.append(_parameter(parameter, "Any"))
             elif row.parameters[0].type is Generic.ARRAY and parameter.name == "index":
                 texts.append(_parameter(parameter, "int | tuple[int, ...]"))
@@ -189,6 +192,8 @@ def _results(rows: tuple[Intrinsic, ...]) -> list[str]:
         for form in _forms(row):
             if row.result is Generic.SAME:
                 found.append(form)
+            elif row.result is Generic.COOP_VEC:
+                found.append("Any")
             elif row.result is Generic.ELEMENT:
                 found.append("Any" if form == "Any" else "float")
             else:

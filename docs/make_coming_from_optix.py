@@ -64,7 +64,10 @@ HOST: tuple[tuple[str, str, str, str], ...] = (
     ("optixMicromapIndexToBaseBarycentrics", "micromap_index_to_base_barycentrics", THERE, "gives the three corners"),
     ("optixBaseBarycentricsToMicroBarycentrics", "base_barycentrics_to_micro_barycentrics", THERE, ""),
     ("optixDisplacementMicromapArrayBuild, optixDisplacementMicromapArrayComputeMemoryUsage", "", ABSENT, "dropped by OptiX 9"),
-    ("optixCoopVecMatrixConvert, optixCoopVecMatrixComputeSize", "", ABSENT, ""),
+    ("optixCoopVecMatrixConvert", "DeviceContext.coop_vec_matrix_convert", THERE, "buffers are numpy arrays; returns the output"),
+    ("optixCoopVecMatrixComputeSize", "DeviceContext.coop_vec_matrix_compute_size", THERE, "optimal layouts hold floats as float32"),
+    ("OptixCoopVecMatrixDescription", "CoopVecMatrixDescription", THERE, "a size of 0 is the one that the rest gives"),
+    ("OptixNetworkDescription", "NetworkDescription", THERE, "or a plain list of matrices"),
     (
         "optixDenoiserCreate, optixDenoiserCreateWithUserModel, optixDenoiserDestroy, optixDenoiserComputeMemoryResources, "
         "optixDenoiserSetup, optixDenoiserInvoke, optixDenoiserComputeIntensity, optixDenoiserComputeAverageColor, "
@@ -84,7 +87,6 @@ ABSENT_DEVICE: tuple[tuple[str, str], ...] = (
     ),
     ("optixGetExceptionLineInfo", "failed launches tell path and line"),
     ("optixTexFootprint2D, optixTexFootprint2DLod, optixTexFootprint2DGrad", ""),
-    ("optixCoopVec...", "write the matrix product as a loop"),
 )
 
 _LETTERS = {
@@ -101,6 +103,11 @@ _RENAMED = {
     "optixGetSbtDataPointer": "takes the struct class; a program's struct parameter is the same data",
     "optixHitObjectGetSbtDataPointer": "takes the struct class",
     "optixTrace": "keywords with defaults; payload is a struct, or a tuple that comes back",
+    "optixCoopVecLoad": "the type comes first; an array and an offset for the pointer",
+    "optixCoopVecCvt": "the type comes first; float16 and float32 to each other too",
+    "optixCoopVecMatMul": "template arguments are keywords with defaults, n and k those of the types; float32 matrices too",
+    "optixCoopVecOuterProductAccumulate": "sums are kept as float32; float32 vectors too",
+    "optixCoopVecGetMatrixSize": "template arguments are arguments, and constants",
     "optixTraverse": "as trace()",
     "optixInvoke": "payload as for trace()",
     "optixDirectCall": "arguments and `result=`; checked against the pipeline's callables",

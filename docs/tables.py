@@ -6,16 +6,25 @@ import re
 from pathlib import Path
 
 from optixc.diagnostics import CODES
+from optixc.enums_extensions import CoopVecElemType, CoopVecMatrixLayout
 from optixc.ir import types as t
 from optixc.ir.intrinsic_rows import ROWS
+from optixc.ir.intrinsic_rows_coop_vec import ROWS as COOP_VEC_ROWS
 from optixc.ir.intrinsic_rows_hit import ROWS as HIT_ROWS
 from optixc.ir.intrinsic_rows_hit_object import ROWS as HIT_OBJECT_ROWS
 from optixc.ir.intrinsic_rows_math import ROWS as MATH_ROWS
-from optixc.ir.intrinsics import Effect, Generic, Intrinsic
+from optixc.ir.intrinsics import Effect, Generic, Intrinsic, IntrinsicParameter
 from optixc.ir.programs import ALL_PROGRAMS
 
 _CASES = Path(__file__).resolve().parents[1] / "tests" / "errors"
 _EXPECTATION = re.compile(r"^(.*?)\s*# E\[(OX\d+)\]: (.*?)(?:\s*# E\[.*)?$")
+
+_CONSTANTS = {
+    **{("matrix_layout", int(one)): one.name for one in CoopVecMatrixLayout},
+    **{(f"{name}_type", int(CoopVecElemType.UNKNOWN)): "UNKNOWN" for name in ("matrix_element", "bias_element")},
+    ("input_interpretation", int(CoopVecElemType.UNKNOWN)): "UNKNOWN",
+}
+"""Defaults that are members of enumerations, by the parameter's name and value."""
 
 _EFFECTS = {
     Effect.ENDS_PROGRAM: " Ends the program.",
@@ -25,7 +34,8 @@ _EFFECTS = {
 
 def device_functions_page() -> str:
     """docs/language/device-functions.md."""
-    groups: dict[str, list[Intrinsic]] = {"Launch, rays and traces": [], "The hit": [], "Hit objects": [], "Mathematics and memory": []}
+    titles = ("Launch, rays and traces", "The hit", "Hit objects", "Mathematics and memory", "Cooperative vectors")
+    groups: dict[str, list[Intrinsic]] = {title: [] for title in titles}
     for row in ROWS:
         if row in HIT_ROWS:
             groups["The hit"].append(row)
@@ -33,6 +43,8 @@ def device_functions_page() -> str:
             groups["Hit objects"].append(row)
         elif row in MATH_ROWS:
             groups["Mathematics and memory"].append(row)
+        elif row in COOP_VEC_ROWS:
+            groups["Cooperative vectors"].append(row)
         else:
             groups["Launch, rays and traces"].append(row)
     parts = [
@@ -50,11 +62,19 @@ def device_functions_page() -> str:
 def _row(row: Intrinsic) -> str:
     name = row.overload_of or row.name
     parameters = ", ".join(
-        f"{one.name}: {_type(one.type)}" + (f" = {one.default}" if one.default is not None else "") for one in row.parameters
+        f"{one.name}: {_type(one.type)}" + _default(one) for one in row.parameters
     )
     allowed = "every program" if row.allowed == ALL_PROGRAMS else ", ".join(sorted(kind.value for kind in row.allowed))
     optix = f"`{row.optix}`" if row.optix else ""
     return f"| `{name}({parameters})` | {_type(row.result)} | {optix} | {allowed} | {row.doc}{_EFFECTS.get(row.effect, '')} |\n"
+
+
+def _default(parameter: IntrinsicParameter) -> str:
+    if parameter.optional:
+        return " = None"
+    if row_constant := _CONSTANTS.get((parameter.name, parameter.default)):
+        return f" = {row_constant}"
+    return f" = {parameter.default}" if parameter.default is not None else ""
 
 
 def _type(type_: t.Type | Generic) -> str:

@@ -16,9 +16,10 @@ from optixc.diagnostics import CompileError
 from optixc.enums import *  # noqa: F403
 from optixc.errors import *  # noqa: F403
 from optixc.host.accel import Accel
-from optixc.host.annotations import Array, Array2, Array3, FixedArray, Texture, Traversable, TraverseData
+from optixc.host.annotations import Array, Array2, Array3, CoopVec, FixedArray, Texture, Traversable, TraverseData
 from optixc.host.bound_values import BoundValue
 from optixc.host.context import OptixcWarning
+from optixc.host.coop_vec import CoopVecMatrixDescription, NetworkDescription
 from optixc.host.groups import Module, Program, ProgramGroup, Record
 from optixc.host.image import read_image, write_image
 from optixc.host.input_curves import BuildInputCurves, BuildInputSpheres
@@ -103,11 +104,14 @@ __all__ = [
     "BuildInputSpheres",
     "BuildInputTriangles",
     "CompileError",
+    "CoopVec",
+    "CoopVecMatrixDescription",
     "DeviceContext",
     "FixedArray",
     "Instance",
     "Module",
     "MotionOptions",
+    "NetworkDescription",
     "OpacityMicromap",
     "OpacityMicromapArray",
     "OptixcWarning",

@@ -2,20 +2,24 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from types import ModuleType
 from typing import Any
 
+from numpy.typing import NDArray
+
 from optixc import driver
 from optixc.cache import Cache
+from optixc.enums_extensions import CoopVecElemType, CoopVecMatrixLayout
 from optixc.enums_program import ProgramGroupKind
 from optixc.enums_scene import BuildFlags, OpacityMicromapFlags
 from optixc.errors import DiskCacheInvalidPathError, DiskCachePermissionError, InvalidValueError, OptixError
-from optixc.host import transforms
+from optixc.host import coop_vec, transforms
 from optixc.host.accel import Accel
 from optixc.host.bound_values import NO_ANNOTATION, merge, plain_values
 from optixc.host.context import LOG_ERROR, LOG_PRINT, LOG_WARNING, Context, LogCallback
+from optixc.host.coop_vec import CoopVecMatrixDescription, NetworkDescription
 from optixc.host.groups import Module, Program, ProgramGroup
 from optixc.host.inputs import BuildInput, MotionOptions
 from optixc.host.opacity import OpacityMicromapArray, build_array
@@ -248,6 +252,30 @@ class DeviceContext(Context):
         format), and optionally `histogram`, rows of (count, subdivision_level, format), which must agree with them."""
         _ = self.handle
         return build_array(self, data, descs, histogram, flags)
+
+
+    def coop_vec_matrix_compute_size(
+        self, n: int, k: int, element_type: CoopVecElemType, layout: CoopVecMatrixLayout, row_column_stride_in_bytes: int = 0
+    ) -> int:
+        """Bytes of a matrix of n rows and k columns, a multiple of 64, as `coop_vec_get_matrix_size` gives them in shaders."""
+        return coop_vec.compute_size(n, k, element_type, layout, row_column_stride_in_bytes)
+
+    def coop_vec_matrix_convert(
+        self,
+        input_network: NetworkDescription | Iterable[CoopVecMatrixDescription],
+        input: NDArray[Any],
+        output_network: NetworkDescription | Iterable[CoopVecMatrixDescription],
+        output: NDArray[Any] | None = None,
+        *,
+        num_networks: int = 1,
+        input_stride: int = 0,
+        output_stride: int = 0,
+    ) -> NDArray[Any]:
+        """Convert the matrices of networks of one shape to other layouts and element types; gives the output.
+
+        Without `output` it is a new array of bytes. The strides, in bytes, lie between networks and are ignored for one network.
+        """
+        return coop_vec.convert(input_network, input, output_network, output, num_networks, input_stride, output_stride)
 
 
 def _folder(path: Any, what: str) -> Path:

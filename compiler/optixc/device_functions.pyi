@@ -33,6 +33,22 @@ __all__ = [
     "clamp",
     "clz",
     "continuation_call",
+    "coop_vec_add",
+    "coop_vec_cvt",
+    "coop_vec_exp2",
+    "coop_vec_ffma",
+    "coop_vec_get_matrix_size",
+    "coop_vec_load",
+    "coop_vec_log2",
+    "coop_vec_mat_mul",
+    "coop_vec_max",
+    "coop_vec_min",
+    "coop_vec_mul",
+    "coop_vec_outer_product_accumulate",
+    "coop_vec_reduce_sum_accumulate",
+    "coop_vec_step",
+    "coop_vec_sub",
+    "coop_vec_tanh",
     "copysign",
     "cos",
     "cosh",
@@ -1404,6 +1420,54 @@ def atomic_dec(array: Any, index: int | tuple[int, ...], value: float) -> Any:
 
 def atomic_cas(array: Any, index: int | tuple[int, ...], compare: float, value: float) -> Any:
     """Replace an element by `value` if it is `compare`; gives the value before."""
+
+def coop_vec_load(type: Any, array: Any, offset_in_bytes: int = ...) -> Any:
+    """The vector of `type` that stands in an array, from this offset."""
+
+def coop_vec_exp2(vector: Any) -> Any:
+    """2 to the power of each element."""
+
+def coop_vec_log2(vector: Any) -> Any:
+    """Logarithm to base 2 of each element."""
+
+def coop_vec_tanh(vector: Any) -> Any:
+    """Hyperbolic tangent of each element."""
+
+def coop_vec_cvt(type: Any, vector: Any) -> Any:
+    """The elements as float16 or float32."""
+
+def coop_vec_min(a: Any, b: Any) -> Any:
+    """The smaller of each two elements."""
+
+def coop_vec_max(a: Any, b: Any) -> Any:
+    """The greater of each two elements."""
+
+def coop_vec_mul(a: Any, b: Any) -> Any:
+    """Product, element by element."""
+
+def coop_vec_add(a: Any, b: Any) -> Any:
+    """Sum, element by element."""
+
+def coop_vec_sub(a: Any, b: Any) -> Any:
+    """Difference, element by element."""
+
+def coop_vec_step(a: Any, b: Any) -> Any:
+    """0 where the element of b is below that of a, else 1."""
+
+def coop_vec_ffma(a: Any, b: Any, c: Any) -> Any:
+    """a * b + c, element by element, rounded once."""
+
+def coop_vec_mat_mul(type: Any, vector: Any, matrix: Any, matrix_offset_in_bytes: int = ..., bias: Any = ..., bias_offset_in_bytes: int = ..., row_column_stride_in_bytes: int = ..., input_interpretation: int = ..., matrix_layout: int = ..., transpose: bool = ..., matrix_element_type: int = ..., bias_element_type: int = ...) -> Any:
+    """matrix * vector + bias, as a vector of `type`; an element type that is UNKNOWN is that of the vector or result."""
+
+def coop_vec_reduce_sum_accumulate(vector: Any, array: Any, offset_in_bytes: int = ...) -> None:
+    """Add each element to the one in memory, atomically."""
+
+def coop_vec_outer_product_accumulate(a: Any, b: Any, matrix: Any, offset_in_bytes: int = ..., matrix_layout: int = ...) -> None:
+    """Add a * transpose(b) to the matrix in memory, atomically."""
+
+def coop_vec_get_matrix_size(n: int, k: int, element_type: int, matrix_layout: int = ..., row_column_stride_in_bytes: int = ...) -> int:
+    """Bytes of a matrix of n rows and k columns, a multiple of 64; a constant."""
 
 
 @overload

@@ -50,6 +50,7 @@ CODES: dict[str, str] = {
     "OX319": "a value is not callable",
     "OX320": "a name changes its type",
     "OX321": "a result is used where there is none",
+    "OX322": "the types, layouts or offsets of cooperative vectors do not fit",
     "OX401": "a statement is not part of restricted Python",
     "OX402": "an expression is not part of restricted Python",
     "OX403": "text is not a value in shaders",

@@ -51,6 +51,11 @@ def divided(a, b):
 
 
 @ox.device
+def scaled(v: ox.CoopVec[ox.float16, 3], matrix: Array[ox.float16]):
+    return ox.coop_vec_mat_mul(ox.CoopVec[ox.float16, 2], v, matrix)
+
+
+@ox.device
 def distance():
     return ox.get_ray_tmax()
 
@@ -72,6 +77,11 @@ def writer() -> tuple[Any, Any]:
     module = context.module_create([__raygen__writes])
     raygen = context.program_group_create(raygen=module["__raygen__writes"])
     return context.pipeline_create([raygen], simd=1), ox.ShaderBindingTable(raygen=raygen.record())
+
+
+def test_cooperative_vectors_go_in_and_out_as_lists() -> None:
+    matrix = np.array([1, 2, 0, 0, 0, 10], np.float16)
+    assert scaled([1.0, 2.0, 0.1], matrix) == [5.0, float(np.float16(10 * np.float32(np.float16(0.1))))]
 
 
 def test_floats_are_binary32() -> None:

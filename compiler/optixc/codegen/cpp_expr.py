@@ -33,7 +33,7 @@ from optixc.ir.nodes import (
     Unary,
     UnaryOp,
 )
-from optixc.ir.types import FixedArray, Matrix, Scalar, ScalarKind, Struct, Tuple, Type, Vector, scalar_of
+from optixc.ir.types import CoopVec, FixedArray, Matrix, Scalar, ScalarKind, Struct, Tuple, Type, Vector, scalar_of
 
 PRIMARY, UNARY, MULTIPLY, ADD, SHIFT, COMPARE, EQUAL, BIT_AND, BIT_XOR, BIT_OR, AND, OR, CHOICE = range(16, 3, -1)
 
@@ -272,6 +272,8 @@ class Expressions:
                 return Code(f"{name}{{{', '.join(self._members(node.type, node, arguments))}}}")
             case FixedArray():
                 return Code(f"{name}{{{{{', '.join(arguments)}}}}}" if arguments else f"{name}{{}}")
+            case CoopVec():
+                return Code(f"oxrt::coopVecOf<{name}>({', '.join(arguments)})")
             case Tuple():
                 return Code(f"oxrt::makeTuple({', '.join(arguments)})")
             case _:

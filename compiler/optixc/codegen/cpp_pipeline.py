@@ -79,6 +79,8 @@ class PipelineFile:
             self._writer.line("#include <oxrt/device_make_hit.h>")
         if self._features.has("textures"):
             self._writer.line("#include <oxrt/device_texture.h>")
+        if self._features.has("cooperative vectors"):
+            self._writer.line("#include <oxrt/coop_vec.h>")
         self._writer.line()
 
     def _declare_programs(self) -> None:

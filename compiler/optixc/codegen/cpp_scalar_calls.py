@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from optixc.codegen.cpp_coop_vec import checked_spans, memory_call, values_of
 from optixc.codegen.cpp_expr import Expressions
 from optixc.codegen.cpp_signatures import FunctionNames, Signatures
 from optixc.codegen.cpp_types import TypeNames
@@ -9,6 +10,7 @@ from optixc.codegen.names import Scope, string_literal
 from optixc.codegen.needs import REPORT, THROW, Options
 from optixc.codegen.program_classes import known_flags
 from optixc.ir.intrinsic_rows import ATOMIC_NAMES, INTRINSICS
+from optixc.ir.intrinsic_rows_coop_vec import COOP_VEC_NAMES
 from optixc.ir.intrinsics import Effect, Intrinsic, State
 from optixc.ir.nodes import (
     CallCallable,
@@ -25,7 +27,7 @@ from optixc.ir.nodes import (
     Trace,
     is_reference_type,
 )
-from optixc.ir.types import FixedArray, Struct
+from optixc.ir.types import CoopVec, FixedArray, Struct
 from optixc.ir.walk import expressions
 
 _FLAGS_ARGUMENT = 7
@@ -89,7 +91,7 @@ class ScalarCalls:
                 indices = ", ".join(self._expressions.text(index) for index in node.indices)
                 conditions.append(f"oxrt::checked({self._names.thread}).contains({self._expressions.text(node.array)}, {indices})")
                 break
-            if isinstance(node, IndexRef) and isinstance(node.base.type, FixedArray) and not isinstance(node.index, Literal):
+            if isinstance(node, IndexRef) and isinstance(node.base.type, FixedArray | CoopVec) and not isinstance(node.index, Literal):
                 conditions.append(f"{self._expressions.place(node.base)}.contains({self._expressions.text(node.index)})")
             base = getattr(node, "base", None)
             if base is None:
@@ -113,6 +115,9 @@ class ScalarCalls:
     def intrinsic(self, statement: CallIntrinsic) -> str | None:
         """None for a call that does nothing in this pipeline."""
         row = INTRINSICS[statement.name]
+        if statement.name in COOP_VEC_NAMES:
+            spans = checked_spans(statement, [self._names.thread]) if self._options.is_checked else "oxrt::anySpan"
+            return memory_call(statement, self._types, spans, [self._expressions.text(value) for value in values_of(statement)])
         arguments = [self._expressions.text(argument) for argument in statement.arguments]
         if statement.name == REPORT:
             return self._report(statement, arguments)

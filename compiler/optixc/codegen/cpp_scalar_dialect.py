@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
+from optixc.codegen.cpp_coop_vec import callee
 from optixc.codegen.cpp_expr import AND, CHOICE, OR, PRIMARY, Code, within
 from optixc.codegen.cpp_signatures import FunctionNames, Signatures
 from optixc.codegen.cpp_types import TypeNames
 from optixc.codegen.needs import HIT_OBJECT_DATA, Options
 from optixc.ir.intrinsic_rows import INTRINSICS
+from optixc.ir.intrinsic_rows_coop_vec import COOP_VEC_NAMES
 from optixc.ir.intrinsics import State
 from optixc.ir.nodes import ElementRef, Expr, HelperCall, IndexRef, IntrinsicCall, Literal, Local, Logical, Select
-from optixc.ir.types import FixedArray, Type
+from optixc.ir.types import CoopVec, FixedArray, Type
 
 
 class ScalarDialect:
@@ -37,7 +39,7 @@ class ScalarDialect:
         return Code(f"{within(array, PRIMARY)}.at({places})")
 
     def index(self, node: IndexRef, base: Code, index: Code) -> Code:
-        if self._options.is_checked and isinstance(node.base.type, FixedArray) and not isinstance(node.index, Literal):
+        if self._options.is_checked and isinstance(node.base.type, FixedArray | CoopVec) and not isinstance(node.index, Literal):
             return Code(f"{within(base, PRIMARY)}.load({index.text})")
         return Code(f"{within(base, PRIMARY)}[{index.text}]")
 
@@ -59,7 +61,8 @@ class ScalarDialect:
             State.HIT_OBJECT: [self._names.hit_object],
         }[row.state]
         template = f"<{self._types.name(node.type)}>" if node.name == HIT_OBJECT_DATA else ""
-        return Code(f"{row.cpp}{template}({', '.join([*hidden, *arguments])})")
+        name = callee(node) if node.name in COOP_VEC_NAMES else row.cpp
+        return Code(f"{name}{template}({', '.join([*hidden, *arguments])})")
 
     def helper(self, node: HelperCall, arguments: tuple[str, ...]) -> Code:
         hidden = self._signatures.hidden_arguments(node.function, self._names)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from optixc.codegen.cpp_coop_vec import checked_spans, memory_call, values_of
 from optixc.codegen.cpp_scalar_calls import timed
 from optixc.codegen.cpp_signatures import FunctionNames, Signatures
 from optixc.codegen.cpp_spmd_expr import PAYLOAD_SETTER, LaneExpressions
@@ -12,6 +13,7 @@ from optixc.codegen.names import string_literal
 from optixc.codegen.needs import REPORT, THROW, Options
 from optixc.codegen.program_classes import known_flags
 from optixc.ir.intrinsic_rows import INTRINSICS
+from optixc.ir.intrinsic_rows_coop_vec import COOP_VEC_NAMES
 from optixc.ir.intrinsics import Effect, Intrinsic, State
 from optixc.ir.nodes import (
     CallCallable,
@@ -121,6 +123,8 @@ class LaneCalls:
         """A device function with an effect; those without a form over lanes are each lane's own call, lowest lane first. None for a
         call that does nothing in this pipeline."""
         row = INTRINSICS[statement.name]
+        if statement.name in COOP_VEC_NAMES:
+            return self._coop_vec(statement, row)
         arguments = [self._expressions.text(argument) for argument in statement.arguments]
         if statement.name == "set_payload_types" or (statement.name == THROW and not self._options.user_exceptions):
             return None
@@ -144,6 +148,18 @@ class LaneCalls:
             return f"oxrt::makeHitObjects({self._names.hit_object}, {self._mask}, {making})", False
         assert row.state in (State.NONE, State.THREAD), f"{statement.name} has no form over lanes"
         return self._lane_by_lane(statement, row)
+
+    def _coop_vec(self, statement: CallIntrinsic, row: Intrinsic) -> tuple[str, bool]:
+        """Memory of cooperative vectors; what all lanes read alike is read once."""
+        thread = self._names.thread
+        varies = row.effect is not Effect.READS or any(self._expressions.lanes.varies(argument) for argument in statement.arguments)
+        if self._options.is_checked:
+            state = [thread, self._mask] if varies else [f"{thread}.atLane(oxrt::anyLane({self._mask}))"]
+            spans = checked_spans(statement, state)
+        else:
+            spans = f"oxrt::spansOf({self._mask})" if varies else "oxrt::anySpan"
+        arguments = [self._expressions.text(value) for value in values_of(statement)]
+        return memory_call(statement, self._types.types, spans, arguments), varies
 
     def _lane_by_lane(self, statement: CallIntrinsic, row: Intrinsic) -> tuple[str, bool]:
         hidden = [f"{self._names.thread}.atLane(lane)"] if row.state is State.THREAD else []

@@ -155,7 +155,7 @@ def _statement_acts(statement: Stmt) -> bool:
         case Trace() | CallCallable() | Print():
             return True
         case CallIntrinsic(name=name):
-            return INTRINSICS[name].effect is not Effect.PURE or INTRINSICS[name].state is not State.NONE
+            return INTRINSICS[name].effect not in (Effect.PURE, Effect.READS) or INTRINSICS[name].state is not State.NONE
         case While():
             return polls(statement)
         case Assign(target=target):

@@ -9,12 +9,14 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 
+from optixc.codegen.cpp_coop_vec import callee
 from optixc.codegen.cpp_expr import AND, BIT_AND, BIT_OR, CHOICE, OR, PRIMARY, UNARY, Code, Expressions, within
 from optixc.codegen.cpp_signatures import FunctionNames
 from optixc.codegen.cpp_spmd_clones import Clones
 from optixc.codegen.cpp_spmd_types import WideTypes
 from optixc.codegen.needs import HIT_OBJECT_DATA, Options
 from optixc.ir.intrinsic_rows import INTRINSICS
+from optixc.ir.intrinsic_rows_coop_vec import COOP_VEC_NAMES
 from optixc.ir.intrinsics import State
 from optixc.ir.nodes import (
     ArrayShape,
@@ -161,7 +163,8 @@ class LaneDialect:
         if not self.varies(node) and row.state is State.THREAD and node.name not in _THREAD_LANES:
             return Code(f"{row.cpp}({', '.join([f'*{self._names.thread}.thread', *arguments])})")
         if row.state is State.NONE and not (node.name in _PER_LANE and self.varies(node)):
-            return Code(f"{row.cpp}({', '.join(arguments)})")
+            name = callee(node) if node.name in COOP_VEC_NAMES else row.cpp
+            return Code(f"{name}({', '.join(arguments)})")
         if node.name in _THREAD_LANES or node.name in _HIT_LANES:
             hidden = self._names.trace if row.state is State.RAY else self._names.thread
             return Code(f"{row.cpp}({', '.join([hidden, *arguments])})")

@@ -63,6 +63,8 @@ class SpmdFile(PipelineFile):
         order = self._functions_over_lanes()
         self._head()
         self._writer.line(f"#include <oxrt/{'lanes_hit_object' if self._features.has('hit objects') else 'lanes_trace'}.h>")
+        if self._features.has("cooperative vectors"):
+            self._writer.line("#include <oxrt/lanes_coop_vec.h>")
         self._writer.line()
         self._writer.line("namespace {")
         self._writer.line()

@@ -13,6 +13,7 @@ from optixc.codegen.names import Scope, identifier
 from optixc.codegen.writer import Writer
 from optixc.ir.types import (
     Array,
+    CoopVec,
     FixedArray,
     Matrix,
     Scalar,
@@ -62,6 +63,8 @@ class TypeNames:
                 return self._structs[type_]
             case FixedArray():
                 return f"oxrt::FixedArray<{self.name(type_.element)}, {type_.size}>"
+            case CoopVec():
+                return f"oxrt::CoopVec<{scalar_name(type_.element)}, {type_.size}>"
             case Array():
                 return f"oxrt::Array<{self.name(type_.element)}, {type_.rank}>"
             case Tuple():
@@ -130,7 +133,7 @@ def payload_words(type_: Type) -> Iterator[Scalar]:
                 yield from payload_words(field.type)
         case Traversable() | Texture():
             yield Scalar(ScalarKind.UINT, 64)
-        case Array() | Tuple() | Void():
+        case Array() | CoopVec() | Tuple() | Void():
             raise AssertionError(f"{type_} has no payload words")
         case _:
             assert_never(type_)

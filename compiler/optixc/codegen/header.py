@@ -16,6 +16,7 @@ from optixc.ir.layout import size_of
 from optixc.ir.nodes import Pipeline
 from optixc.ir.types import (
     Array,
+    CoopVec,
     FixedArray,
     Matrix,
     Scalar,
@@ -89,7 +90,7 @@ def _declaration(type_: Type, name: str, names: dict[Struct, str]) -> str:
             return f"struct {{ {_pointer(type_.element, names)}; {shape} }} {name}"
         case Traversable() | Texture():
             return f"uint64_t {name}"
-        case Tuple() | Void():
+        case CoopVec() | Tuple() | Void():
             raise AssertionError(f"{type_} has no place in memory")
     assert_never(type_)
 

@@ -11,6 +11,7 @@ from dataclasses import dataclass, fields, replace
 
 from optixc.ir.control import polls
 from optixc.ir.intrinsic_rows import INTRINSICS
+from optixc.ir.intrinsic_rows_coop_vec import COOP_VEC_NAMES
 from optixc.ir.intrinsics import Effect, State
 from optixc.ir.nodes import (
     Assert,
@@ -158,8 +159,9 @@ def _of_intrinsic(name: str, options: Options) -> Needs:
     if name == THROW:
         return Needs(thread=True, throws=True) if options.user_exceptions else Needs()
     state = row.state
+    is_checked_memory = options.is_checked and name in COOP_VEC_NAMES and row.effect is not Effect.PURE
     return Needs(
-        thread=state is State.THREAD,
+        thread=state is State.THREAD or is_checked_memory,
         ray=state is State.RAY,
         hit_object=state is State.HIT_OBJECT,
         programs=name == REPORT,

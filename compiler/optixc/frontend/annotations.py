@@ -16,6 +16,8 @@ from optixc.frontend.symbols import BuiltinName, ConstantSymbol, EnumSymbol, Pyt
 from optixc.ir import types as t
 
 MAX_FIXED_ELEMENTS = 65536
+MAX_COOP_VEC_ELEMENTS = 1024
+_COOP_VEC_ELEMENTS = (t.FLOAT16, t.FLOAT32, t.INT8, t.UINT8, t.INT32, t.UINT32)
 _REMEDIES = {
     "list": "ox.FixedArray[T, N] or ox.Array[T]",
     "str": "text is no value in shaders",
@@ -44,6 +46,8 @@ def resolve_type(scope: Declarations, node: ast.expr, diagnostics: Diagnostics) 
                     return _resolve_tuple(scope, index, diagnostics)
                 case BuiltinName(name="FixedArray"):
                     return _resolve_fixed_array(scope, node, index, diagnostics)
+                case BuiltinName(name="CoopVec"):
+                    return _resolve_coop_vec(scope, node, index, diagnostics)
                 case BuiltinName(name=name) if name in names.ARRAY_RANKS:
                     return _resolve_array(scope, index, names.ARRAY_RANKS[name], diagnostics)
                 case PythonName(module="typing", name="Final" | "Annotated" | "ClassVar"):
@@ -87,7 +91,7 @@ def _report_no_type(scope: Declarations, node: ast.expr, symbol: Symbol | None, 
         message = f"`{text}` is no type of shaders: it is {symbol.reason}"
     elif isinstance(symbol, BuiltinName) and symbol.name in names.ARRAY_RANKS:
         message, note = f"`{text}` needs its element type", f"write {text}[float3] or the like"
-    elif isinstance(symbol, BuiltinName) and symbol.name == "FixedArray":
+    elif isinstance(symbol, BuiltinName) and symbol.name in names.SIZED_TYPES:
         message, note = f"`{text}` needs element type and size", f"write {text}[float, 8] or the like"
     else:
         message = f"`{text}` is no type"
@@ -107,19 +111,41 @@ def _resolve_fixed_array(scope: Declarations, node: ast.expr, index: ast.expr, d
         diagnostics.add(source, "OX201", node, "FixedArray needs an element type and a size", "write ox.FixedArray[float, 8] or the like")
         return None
     element = resolve_type(scope, index.elts[0], diagnostics)
-    try:
-        size = constant_of(scope, index.elts[1])
-    except FoldError as error:
-        diagnostics.add(source, error.code, index.elts[1], str(error))
+    size = _resolve_size(scope, index.elts[1], "FixedArray", MAX_FIXED_ELEMENTS, diagnostics)
+    if size is None:
         return None
-    if not isinstance(size, int) or isinstance(size, bool) or not 1 <= size <= MAX_FIXED_ELEMENTS:
-        message = f"the size of a FixedArray is an integer constant from 1 to {MAX_FIXED_ELEMENTS}"
-        diagnostics.add(source, "OX201", index.elts[1], message)
-        return None
-    if isinstance(element, t.Array | t.Tuple | t.Void):
+    if isinstance(element, t.Array | t.Tuple | t.Void | t.CoopVec):
         diagnostics.add(source, "OX201", index.elts[0], f"a FixedArray cannot hold {element}", "numbers, vectors, matrices or structs")
         return None
     return t.FixedArray(element, size) if element is not None else None
+
+
+def _resolve_size(scope: Declarations, node: ast.expr, what: str, limit: int, diagnostics: Diagnostics) -> int | None:
+    try:
+        size = constant_of(scope, node)
+    except FoldError as error:
+        diagnostics.add(scope.file.source, error.code, node, str(error))
+        return None
+    if not isinstance(size, int) or isinstance(size, bool) or not 1 <= size <= limit:
+        diagnostics.add(scope.file.source, "OX201", node, f"the size of a {what} is an integer constant from 1 to {limit}")
+        return None
+    return size
+
+
+def _resolve_coop_vec(scope: Declarations, node: ast.expr, index: ast.expr, diagnostics: Diagnostics) -> t.Type | None:
+    source = scope.file.source
+    if not (isinstance(index, ast.Tuple) and len(index.elts) == 2):
+        diagnostics.add(source, "OX201", node, "CoopVec needs an element type and a size", "write ox.CoopVec[ox.float16, 32] or the like")
+        return None
+    element = resolve_type(scope, index.elts[0], diagnostics)
+    size = _resolve_size(scope, index.elts[1], "CoopVec", MAX_COOP_VEC_ELEMENTS, diagnostics)
+    if element is None or size is None:
+        return None
+    if element not in _COOP_VEC_ELEMENTS:
+        note = "it holds " + ", ".join(map(str, _COOP_VEC_ELEMENTS))
+        diagnostics.add(source, "OX201", index.elts[0], f"a CoopVec cannot hold {element}", note)
+        return None
+    return t.CoopVec(element, size)
 
 
 def _resolve_array(scope: Declarations, index: ast.expr, rank: int, diagnostics: Diagnostics) -> t.Type | None:

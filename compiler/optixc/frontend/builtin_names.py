@@ -58,6 +58,9 @@ PYTHON_TYPE_NAMES = frozenset({"bool", "int", "float"})
 
 ARRAY_RANKS = {"Array": 1, "Array1": 1, "Array2": 2, "Array3": 3}
 
+SIZED_TYPES = frozenset({"FixedArray", "CoopVec"})
+"""Types of an element type and a number of elements."""
+
 STRUCT_DECORATORS = {
     "struct": t.StructKind.PLAIN,
     "payload": t.StructKind.PAYLOAD,
@@ -80,7 +83,7 @@ SPECIAL_FORMS = frozenset(
         "copy",
         "launch_params",
         "payload_word",
-        "FixedArray",
+        *SIZED_TYPES,
     }
 )
 

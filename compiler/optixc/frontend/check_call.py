@@ -8,6 +8,7 @@ from optixc.frontend import builtin_names as names
 from optixc.frontend.annotations import resolve_type
 from optixc.frontend.arguments import bind_arguments, check_written, refuse_stars
 from optixc.frontend.check_construct import construct_struct, construct_type
+from optixc.frontend.check_coop_vec import check_coop_vec
 from optixc.frontend.check_intrinsic import check_atomic, check_intrinsic
 from optixc.frontend.check_special import check_special
 from optixc.frontend.check_trace import check_trace
@@ -30,6 +31,7 @@ from optixc.frontend.symbols import (
 from optixc.frontend.weak import INVALID, Invalid, default_type
 from optixc.ir import types as t
 from optixc.ir.intrinsic_rows import ATOMIC_NAMES, INTRINSICS
+from optixc.ir.intrinsic_rows_coop_vec import COOP_VEC_NAMES
 from optixc.ir.nodes import is_reference_type
 
 
@@ -114,7 +116,7 @@ _PYTHON_BUILTINS = {
 
 def _check_generic_type(c: Context, node: ast.Call, func: ast.Subscript) -> ExprInfo:
     symbol = static_symbol(c, func.value) if isinstance(func.value, ast.Name | ast.Attribute) else None
-    if isinstance(symbol, BuiltinName) and symbol.name == "FixedArray":
+    if isinstance(symbol, BuiltinName) and symbol.name in names.SIZED_TYPES:
         target = resolve_type(c.scope, func, c.diagnostics)
         return ExprInfo(INVALID) if target is None else construct_type(c, node, target)
     if isinstance(symbol, BuiltinName) and symbol.name in names.ARRAY_RANKS:
@@ -129,6 +131,8 @@ def _check_builtin(c: Context, node: ast.Call, name: str) -> ExprInfo:
         return check_trace(c, node, name)
     if name in ATOMIC_NAMES:
         return check_atomic(c, node, INTRINSICS[name])
+    if name in COOP_VEC_NAMES:
+        return check_coop_vec(c, node, name)
     if name in names.SPECIAL_FORMS:
         return check_special(c, node, name)
     if name in INTRINSICS:
@@ -152,7 +156,7 @@ def _check_length(c: Context, node: ast.Call) -> ExprInfo:
             return info
         case t.Array():
             return ExprInfo(t.INT32, use=ShapeUse(bound[0], 0), writes=info.writes)
-        case t.FixedArray(size=size):
+        case t.FixedArray(size=size) | t.CoopVec(size=size):
             return ExprInfo(t.INT32, constant=size)
         case t.Tuple(items=items):
             return ExprInfo(t.INT32, constant=len(items))

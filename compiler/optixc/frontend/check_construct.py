@@ -1,4 +1,4 @@
-"""Constructors: numbers, vectors, matrices, structs, fixed arrays."""
+"""Constructors: numbers, vectors, matrices, structs, fixed arrays, cooperative vectors."""
 
 from __future__ import annotations
 
@@ -34,6 +34,8 @@ def construct_type(c: Context, node: ast.Call, target: t.Type) -> ExprInfo:
             return _construct_matrix(c, node, target)
         case t.FixedArray():
             return _construct_fixed_array(c, node, target)
+        case t.CoopVec():
+            return _construct_coop_vec(c, node, target)
         case t.Traversable() | t.Texture():
             if len(node.args) == 1 and c.coerce(node.args[0], t.UINT64, "a handle"):
                 return ExprInfo(target, use=ConstructUse(target, (node.args[0],)), writes=infos[0].writes)
@@ -163,6 +165,17 @@ def _construct_fixed_array(c: Context, node: ast.Call, target: t.FixedArray) -> 
         if not c.coerce(argument, target.element, "an item") or not check_no_alias(c, argument, "this item"):
             return ExprInfo(INVALID)
     return ExprInfo(target, use=ConstructUse(target, tuple(node.args)), writes=_writes(c, node), fresh=True)
+
+
+def _construct_coop_vec(c: Context, node: ast.Call, target: t.CoopVec) -> ExprInfo:
+    """All zero, one number for all elements, or one number for each."""
+    if len(node.args) not in (0, 1, target.size):
+        message = f"{target}() takes {target.size} elements, one for all, or none (all zero), here are {len(node.args)}"
+        return c.error("OX305", node, message, "")
+    for argument in node.args:
+        if not c.coerce(argument, target.element, "an element"):
+            return ExprInfo(INVALID)
+    return ExprInfo(target, use=ConstructUse(target, tuple(node.args)), writes=_writes(c, node))
 
 
 def construct_struct(c: Context, node: ast.Call, symbol: StructSymbol) -> ExprInfo:

@@ -260,7 +260,7 @@ def _check_item(c: Context, node: ast.Subscript, base: ExprInfo, index: ast.expr
             if isinstance(base.use, ShapeUse):
                 return ExprInfo(t.INT32, use=ShapeUse(base.use.array, axis), writes=writes)
             return ExprInfo(items[axis], use=TupleUse(axis), writes=writes, fresh=base.fresh)
-        case t.FixedArray(element=element, size=size):
+        case t.FixedArray(element=element, size=size) | t.CoopVec(element=element, size=size):
             stored: t.Type = element
         case t.Vector(element=element, size=size):
             stored = element

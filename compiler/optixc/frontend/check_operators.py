@@ -229,6 +229,8 @@ def _meeting_note(left: CheckType, right: CheckType) -> str:
         signed = a if a.kind is t.ScalarKind.INT else b
         unsigned = b if signed is a else a
         return f"signed and unsigned do not mix: write {signed}(...) or {unsigned}(...) around one of them"
+    if isinstance(left, t.CoopVec) or isinstance(right, t.CoopVec):
+        return "write ox.coop_vec_add(a, b) and its like"
     if isinstance(left, t.Vector) and isinstance(right, t.Vector):
         return "vectors of one size are needed"
     return "expected numbers or vectors"

@@ -38,7 +38,7 @@ def check_special(c: Context, node: ast.Call, name: str) -> ExprInfo:
             return c.error("OX402", node, "payload_word() belongs into an `@ox.payload` class", "")
         case "launch_params":
             return c.error("OX402", node, "launch_params() belongs to module level", "write params = ox.launch_params(Params)")
-    return c.error("OX319", node.func, f"`{name}` cannot be called like this", "write ox.FixedArray[float, 8]()")
+    return c.error("OX319", node.func, f"`{name}` cannot be called like this", f"write ox.{name}[float, 8]()")
 
 
 def _check_copy(c: Context, node: ast.Call) -> ExprInfo:

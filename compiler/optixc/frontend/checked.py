@@ -142,6 +142,16 @@ class IntrinsicUse:
 
 
 @dataclass(frozen=True)
+class CoopVecUse:
+    """A function of cooperative vectors: its values, and for a product the constants input interpretation, element type, layout and
+    transpose."""
+
+    row: Intrinsic
+    arguments: tuple[Argument, ...]
+    settings: tuple[int, ...] = ()
+
+
+@dataclass(frozen=True)
 class AtomicUse:
     """An atomic operation on `array[indices]`, then its values."""
 
@@ -222,6 +232,7 @@ Use = (
     | ConvertUse
     | ConstructUse
     | IntrinsicUse
+    | CoopVecUse
     | AtomicUse
     | SbtDataUse
     | CopyUse

@@ -181,7 +181,7 @@ class Declarer:
         if isinstance(node.value, ast.Subscript):
             # A type under a name of its own: `Table = ox.FixedArray[float, 8]`.
             base = resolve_dotted(scope, node.value.value)
-            if isinstance(base, BuiltinName) and (base.name in names.ARRAY_RANKS or base.name == "FixedArray"):
+            if isinstance(base, BuiltinName) and (base.name in names.ARRAY_RANKS or base.name in names.SIZED_TYPES):
                 return ConstantSymbol(node.value, None, scope.span(node), scope)
         if isinstance(node.value, ast.Constant) and isinstance(node.value.value, str | bytes):
             return SkippedName(name, "text", scope.span(node))

@@ -83,6 +83,10 @@ class _Struct:
         type_ = resolve_type(self.scope, annotation, self.diagnostics)
         if type_ is None:
             type_ = t.VOID
+        elif isinstance(type_, t.CoopVec):
+            note = "keep the numbers in an array and read them with ox.coop_vec_load()"
+            self._error(annotation, f"a field cannot be of type {type_}", note)
+            type_ = t.VOID
         elif isinstance(type_, t.Void | t.Tuple) or (isinstance(type_, t.Struct) and type_.kind is not t.StructKind.PLAIN):
             self._error(
                 annotation, f"a field cannot be of type {type_}", "numbers, vectors, matrices, arrays, handles or `@ox.struct` classes"

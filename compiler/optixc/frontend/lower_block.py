@@ -11,6 +11,7 @@ from optixc.frontend.checked import ExprInfo, FunctionInstance
 from optixc.frontend.weak import ConstantValue
 from optixc.ir import types as t
 from optixc.ir.intrinsic_rows import INTRINSICS
+from optixc.ir.intrinsic_rows_coop_vec import COOP_VEC_NAMES
 from optixc.ir.intrinsics import State
 from optixc.ir.nodes import (
     Assign,
@@ -146,7 +147,7 @@ def is_stable(expression: Expr) -> bool:
         case Construct(arguments=arguments):
             return all(is_stable(argument) for argument in arguments)
         case IntrinsicCall(name=name, arguments=arguments):
-            is_free = not INTRINSICS[name].optix and INTRINSICS[name].state is State.NONE
+            is_free = INTRINSICS[name].state is State.NONE and (not INTRINSICS[name].optix or name in COOP_VEC_NAMES)
             return is_free and all(is_stable(argument) for argument in arguments)
     return False
 

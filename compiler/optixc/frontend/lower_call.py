@@ -11,6 +11,7 @@ from optixc.frontend.checked import (
     CallableUse,
     ConstructUse,
     ConvertUse,
+    CoopVecUse,
     CopyUse,
     DefaultArgument,
     DefaultExpression,
@@ -52,6 +53,9 @@ from optixc.ir.nodes import (
     is_reference_type,
 )
 
+_STEMS = {"report_intersection": "accepted", "coop_vec_mat_mul": "product", "coop_vec_load": "loaded"}
+"""What the temporaries of statements are called."""
+
 NOTHING = Construct(t.Tuple(()), ())
 """What a call without result gives as an expression; no one uses it."""
 
@@ -78,6 +82,8 @@ def lower_call(low: FunctionLowering, node: ast.Call, block: Block) -> Expr:
             return NOTHING
         case IntrinsicUse():
             return _intrinsic(low, node, info.use, block)
+        case CoopVecUse():
+            return _coop_vec(low, node, info.use, block)
         case AtomicUse():
             return _atomic(low, node, info.use, block)
         case ReportUse(row=row, arguments=arguments):
@@ -133,7 +139,7 @@ def _construct(low: FunctionLowering, node: ast.Call, use: ConstructUse, block: 
     match target:
         case t.Vector():
             return _construct_vector(low, node, target, values, use.spread, block)
-        case t.FixedArray() | t.Struct():
+        case t.FixedArray() | t.Struct() | t.CoopVec():
             return Construct(target, tuple(values))
         case t.Matrix():
             return Construct(target, tuple(values))
@@ -187,9 +193,19 @@ def _intrinsic(low: FunctionLowering, node: ast.Call, use: IntrinsicUse, block: 
     return _effect(low, node, use.row.name, values, type_, block)
 
 
+def _coop_vec(low: FunctionLowering, node: ast.Call, use: CoopVecUse, block: Block) -> Expr:
+    """The constants of a product stand behind its values. Products and loads are statements: they are done once, before later stores."""
+    values = _in_source_order(low, node, use.arguments, block)
+    type_ = low.info(node).type
+    assert isinstance(type_, t.CoopVec | t.Void)
+    if use.row.effect is Effect.PURE:
+        return IntrinsicCall(use.row.name, tuple(values), type_, low.span(node))
+    return _effect(low, node, use.row.name, [*values, *(literal(one, t.INT32) for one in use.settings)], type_, block)
+
+
 def _effect(low: FunctionLowering, node: ast.Call, name: str, values: list[Expr], type_: t.Type, block: Block) -> Expr:
     """A device function that does something: a statement, its result a temporary."""
-    target = None if isinstance(type_, t.Void) else low.temporary("accepted" if name == "report_intersection" else "result", type_)
+    target = None if isinstance(type_, t.Void) else low.temporary(_STEMS.get(name, "result"), type_)
     block.emit(CallIntrinsic(target, name, tuple(values), low.span(node)))
     return NOTHING if target is None else LocalRef(target)
 

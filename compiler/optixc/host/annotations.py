@@ -1,7 +1,7 @@
 """The generic types that annotations in shaders use, and what an annotation of a struct's field means.
 
 `Array[T]`, `Array2[T]`, `Array3[T]` are views of numpy memory, `FixedArray[T, N]` elements by value, `Traversable` and `Texture`
-handles.
+handles. `CoopVec[T, N]` is no type of fields: shaders alone have cooperative vectors.
 """
 
 from __future__ import annotations
@@ -29,6 +29,14 @@ class ArrayAnnotation:
 @dataclass(frozen=True)
 class FixedArrayAnnotation:
     """What `FixedArray[float32, 8]` is at run time."""
+
+    element: Any
+    size: int
+
+
+@dataclass(frozen=True)
+class CoopVecAnnotation:
+    """What `CoopVec[float16, 32]` is at run time."""
 
     element: Any
     size: int
@@ -80,6 +88,7 @@ if TYPE_CHECKING:
     if MYPY:
         # A number as a type argument is nothing that mypy knows: what it has no type for is Any.
         FixedArray: Any
+        CoopVec: Any
         TraverseData: Any
     else:
 
@@ -93,6 +102,15 @@ if TYPE_CHECKING:
             def __len__(self) -> int: ...
             def __get__(self, instance: Any, owner: Any = ...) -> Self: ...
             def __set__(self, instance: Any, value: FixedArray | Sequence[Any] | np.ndarray[Any, Any]) -> None: ...
+
+        class CoopVec:
+            """N numbers of a cooperative vector."""
+
+            def __class_getitem__(cls, arguments: Any) -> type[CoopVec]: ...
+            def __init__(self, *items: Any) -> None: ...
+            def __getitem__(self, index: int) -> Any: ...
+            def __setitem__(self, index: int, value: Any) -> None: ...
+            def __len__(self) -> int: ...
 
         class TraverseData(FixedArray):
             """A hit as 20 words."""
@@ -125,6 +143,13 @@ else:
             if not isinstance(size, int) or size < 1:
                 raise TypeError(f"FixedArray takes a type and a positive size, not {size!r}")
             return FixedArrayAnnotation(element, size)
+
+    class CoopVec:
+        """N numbers of a cooperative vector."""
+
+        def __class_getitem__(cls, arguments: Any) -> CoopVecAnnotation:
+            element, size = arguments
+            return CoopVecAnnotation(element, size)
 
     class Traversable:
         """A 64-bit handle of something rays can be traced against."""
@@ -160,6 +185,8 @@ def field_type(annotation: Any) -> FieldType:
         return ArrayField(_element_type(annotation.element), annotation.rank)
     if isinstance(annotation, FixedArrayAnnotation):
         return FixedArrayField(_element_type(annotation.element), annotation.size)
+    if isinstance(annotation, CoopVecAnnotation):
+        raise TypeError("a struct cannot hold a CoopVec; keep the numbers in an array and read them with coop_vec_load()")
     if isinstance(annotation, type):
         return _class_field_type(annotation)
     raise TypeError(f"{annotation!r} is not a type that a struct can hold")

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from optixc.enums_program import DeviceProperty
+from optixc.enums_program import DeviceProperty, DevicePropertyCoopVecFlags
 from optixc.errors import InvalidValueError
 
 _VALUES: dict[DeviceProperty, int] = {
@@ -16,7 +16,7 @@ _VALUES: dict[DeviceProperty, int] = {
     DeviceProperty.LIMIT_MAX_SBT_RECORDS_PER_GAS: 1 << 24,
     DeviceProperty.LIMIT_MAX_SBT_OFFSET: (1 << 28) - 1,
     DeviceProperty.SHADER_EXECUTION_REORDERING: 0,
-    DeviceProperty.COOP_VEC: 0,
+    DeviceProperty.COOP_VEC: int(DevicePropertyCoopVecFlags.STANDARD),
     DeviceProperty.CLUSTER_ACCEL: 0,
     DeviceProperty.LIMIT_MAX_CLUSTER_VERTICES: 256,
     DeviceProperty.LIMIT_MAX_CLUSTER_TRIANGLES: 256,

@@ -111,9 +111,9 @@ def components(indices: tuple[int, ...], result: t.Type) -> Operation:
 
 
 def item(base: t.Type) -> Operation:
-    """`base[index]` of a fixed array, vector or matrix; out of range it is zero."""
+    """`base[index]` of a fixed array, vector of any kind or matrix; out of range it is zero."""
     match base:
-        case t.FixedArray():
+        case t.FixedArray() | t.CoopVec():
             return lambda value, index: value[index]
         case t.Vector(element=element, size=size):
             nothing: Any = values.zero(element)
@@ -125,7 +125,7 @@ def item(base: t.Type) -> Operation:
 
 
 def construct(target: t.Type, sources: tuple[t.Type, ...], spread: bool) -> Operation:
-    """A vector, matrix, struct, fixed array or handle of its parts."""
+    """A vector, matrix, struct, fixed array, cooperative vector or handle of its parts."""
     match target:
         case t.Vector():
             return _construct_vector(target, sources, spread)
@@ -139,6 +139,11 @@ def construct(target: t.Type, sources: tuple[t.Type, ...], spread: bool) -> Oper
             narrow = values.narrow(element)
             return lambda *parts: (
                 values.FixedArrayValue(target, [narrow(part) for part in parts] or [values.zero(element) for _ in range(size)])
+            )
+        case t.CoopVec(element=element, size=size):
+            narrow = values.narrow(element)
+            return lambda *parts: values.CoopVecValue(
+                target, tuple(narrow(part) for part in (parts * size if len(parts) == 1 else parts)) or (values.zero(element),) * size
             )
         case t.Traversable() | t.Texture():
             return lambda value: int(value) & 0xFFFFFFFFFFFFFFFF

@@ -18,7 +18,8 @@ Change = Callable[[Any], Any]
 
 
 def changed(value: Any, steps: tuple[Any, ...], change: Change) -> Any:
-    """`value` with what the steps lead to replaced by `change(old)`. Structs and fixed arrays change in place, vectors are replaced."""
+    """`value` with what the steps lead to replaced by `change(old)`. Structs and fixed arrays change in place, vectors of both
+    kinds are replaced."""
     if not steps:
         return change(value)
     step, rest = steps[0], steps[1:]
@@ -45,6 +46,8 @@ def changed_nothing(value: values.FixedArrayValue, steps: tuple[Any, ...]) -> An
 
 
 def _replaced(value: Any, index: int, part: Any) -> Any:
+    if isinstance(value, values.CoopVecValue):
+        return values.CoopVecValue(value.type, (*value.items[:index], part, *value.items[index + 1 :]))
     if isinstance(value, Matrix):
         rows = [list(row) for row in value]
         rows[index] = list(part)

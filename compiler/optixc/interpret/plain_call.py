@@ -126,6 +126,9 @@ def _into(type_: t.Type, value: Any, name: str) -> Any:
             return values.make_vector(type_, tuple(_into(element, one, name) for one in numbers))
         case t.Tuple(items=items) if isinstance(value, tuple) and len(value) == len(items):
             return tuple(_into(item, one, name) for item, one in zip(items, value, strict=True))
+        case t.CoopVec(element=element, size=size) if isinstance(value, tuple | list | np.ndarray) and len(value) == size:
+            narrow = values.narrow(element)
+            return values.CoopVecValue(type_, tuple(narrow(_into(element, np.asarray(one).item(), name)) for one in value))
         case t.Traversable() | t.Texture():
             return int(getattr(value, "handle", value))
         case _:
@@ -151,7 +154,7 @@ def _out_of(value: Any, function: Callable[..., Any]) -> Any:
             return kind(**fields) if isinstance(kind, type) and layout_of(kind) is not None else value
         case tuple():
             return tuple(_out_of(item, function) for item in value)
-        case values.FixedArrayValue():
+        case values.FixedArrayValue() | values.CoopVecValue():
             return [_out_of(item, function) for item in value.items]
         case _:
             return value

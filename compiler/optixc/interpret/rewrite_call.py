@@ -12,6 +12,7 @@ from optixc.frontend.checked import (
     CallableUse,
     ConstructUse,
     ConvertUse,
+    CoopVecUse,
     CopyUse,
     DefaultArgument,
     DefaultExpression,
@@ -23,7 +24,7 @@ from optixc.frontend.checked import (
     TraceUse,
 )
 from optixc.frontend.weak import default_type, widened
-from optixc.interpret import functions, operations, values
+from optixc.interpret import coop_vec, functions, operations, values
 from optixc.interpret.atomics import atomic
 from optixc.interpret.code import Code, literal
 from optixc.ir import types as t
@@ -56,6 +57,9 @@ def rewrite_call(code: Code, node: ast.Call) -> ast.expr:
             assert isinstance(type_, t.Array) and isinstance(type_.element, t.Scalar)
             parts = [code.expression(code, part) for part in (array, *indices, *given)]
             return code.call(atomic(row.name, type_.element, len(indices)), parts, node, f"{row.name}_")
+        case CoopVecUse(row=row, arguments=arguments):
+            evaluate = coop_vec.function(info.use, default_type(info.type))
+            return _in_order(code, node, evaluate, arguments, f"{row.name}_")
         case ReportUse(row=row, arguments=arguments):
             types = tuple(code.type_of(argument) for argument in arguments)
             perform = machine.report if row.name == "report_intersection" else machine.throw

@@ -72,6 +72,23 @@ class FixedArrayValue:
         return repr(self.items)
 
 
+class CoopVecValue:
+    """A cooperative vector: a value, so that writing an element makes a new one. Elements are numbers that its type holds."""
+
+    def __init__(self, type_: t.CoopVec, items: tuple[Any, ...]) -> None:
+        self.type = type_
+        self.items = items
+
+    def __getitem__(self, index: int) -> Any:
+        return self.items[index] if 0 <= index < len(self.items) else zero(self.type.element)
+
+    def __len__(self) -> int:
+        return len(self.items)
+
+    def __repr__(self) -> str:
+        return f"CoopVec{list(self.items)}"
+
+
 class ArrayValue:
     """A view of the host's memory with the shape of the array; C-contiguous."""
 
@@ -139,6 +156,8 @@ def zero(type_: t.Type) -> Any:
             return struct_class(type_)(*(zero(field.type) for field in fields))
         case t.FixedArray(element=element, size=size):
             return FixedArrayValue(type_, [zero(element) for _ in range(size)])
+        case t.CoopVec(element=element, size=size):
+            return CoopVecValue(type_, (zero(element),) * size)
         case t.Array(rank=rank):
             return ArrayValue(type_, 0, (0,) * rank)
         case t.Tuple(items=items):
@@ -191,6 +210,8 @@ def load(type_: t.Type, address: int) -> Any:
             return tuple(values)
         case t.Void():
             return None
+        case t.CoopVec(element=element, size=size):
+            return CoopVecValue(type_, _numbers_at(element, size).unpack(ctypes.string_at(address, layout.size_of(type_))))
 
 
 def store(type_: t.Type, address: int, value: Any) -> None:
@@ -214,6 +235,8 @@ def store(type_: t.Type, address: int, value: Any) -> None:
             ctypes.memmove(address, _numbers_at(t.UINT64, 1 + type_.rank).pack(value.address, *value.shape), 8 + 8 * type_.rank)
         case t.Traversable() | t.Texture():
             store(t.UINT64, address, value)
+        case t.CoopVec(element=element, size=size):
+            ctypes.memmove(address, _numbers_at(element, size).pack(*value.items), layout.size_of(type_))
         case t.Tuple() | t.Void():
             raise AssertionError(f"{type_} is not stored")
 

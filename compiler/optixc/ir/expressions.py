@@ -76,7 +76,8 @@ class ComponentRef:
 
 @dataclass(frozen=True)
 class IndexRef:
-    """`base[index]`: base is a fixed array (element), a vector (scalar) or a matrix (row vector); index is int32 or uint32."""
+    """`base[index]`: base is a fixed array or cooperative vector (element), a vector (scalar) or a matrix (row vector); index is int32
+    or uint32."""
 
     base: Expr
     index: Expr
@@ -196,7 +197,7 @@ class Convert:
 class Construct:
     """A vector (scalars and vectors in order), matrix (rows or scalars), struct (fields in order), tuple or fixed array (items).
 
-    A fixed array without arguments is all zero.
+    A fixed array without arguments is all zero, and so is a cooperative vector, which may also have one number for all elements.
     """
 
     type: Type

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from optixc.ir import intrinsic_rows_hit, intrinsic_rows_hit_object, intrinsic_rows_math, intrinsic_rows_ray
+from optixc.ir import intrinsic_rows_coop_vec, intrinsic_rows_hit, intrinsic_rows_hit_object, intrinsic_rows_math, intrinsic_rows_ray
 from optixc.ir.intrinsics import Intrinsic
 
 ROWS: tuple[Intrinsic, ...] = (
@@ -10,6 +10,7 @@ ROWS: tuple[Intrinsic, ...] = (
     *intrinsic_rows_hit.ROWS,
     *intrinsic_rows_hit_object.ROWS,
     *intrinsic_rows_math.ROWS,
+    *intrinsic_rows_coop_vec.ROWS,
 )
 
 INTRINSICS: dict[str, Intrinsic] = {row.name: row for row in ROWS}

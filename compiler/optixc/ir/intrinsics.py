@@ -14,9 +14,10 @@ from optixc.ir.types import Type
 
 
 class Effect(Enum):
-    """What calling it does besides giving a value."""
+    """What calling it does besides giving a value. What READS much memory is a statement, so that it is done once and in its place."""
 
     PURE = "pure"
+    READS = "reads memory"
     WRITES = "writes"
     ENDS_PROGRAM = "ends program"
     ENDS_LAUNCH_INDEX = "ends launch index"
@@ -43,6 +44,10 @@ class Generic(Enum):
     ARRAY = "an array of 32 or 64 bit numbers"
     RECORD_STRUCT = "a struct class, given by name"
     HANDLES = "a fixed array of traversables"
+    COOP_VEC = "a cooperative vector"
+    COOP_VEC_OR_NUMBER = "a cooperative vector or a number"
+    COOP_VEC_TYPE = "a type CoopVec[T, N]"
+    MEMORY = "an array of numbers"
 
 
 ParameterType = Type | Generic
@@ -50,11 +55,12 @@ ParameterType = Type | Generic
 
 @dataclass(frozen=True)
 class IntrinsicParameter:
-    """A parameter; `default` is a Python number or None for required."""
+    """A parameter; `default` is a Python number or None for required. An `optional` one may be left out or be None."""
 
     name: str
     type: ParameterType
     default: bool | int | float | None = None
+    optional: bool = False
 
 
 @dataclass(frozen=True)

@@ -14,6 +14,7 @@ import numpy as np
 
 from optixc.ir.types import (
     Array,
+    CoopVec,
     FixedArray,
     Matrix,
     Scalar,
@@ -72,7 +73,7 @@ def size_of(type_: Type) -> int:
             return 4 * type_.rows * type_.columns
         case Struct():
             return struct_layout(type_).size
-        case FixedArray():
+        case FixedArray() | CoopVec():
             return size_of(type_.element) * type_.size
         case Array():
             return POINTER_SIZE + 8 * type_.rank
@@ -93,7 +94,7 @@ def alignment_of(type_: Type) -> int:
             return 4
         case Struct():
             return struct_layout(type_).alignment
-        case FixedArray():
+        case FixedArray() | CoopVec():
             return alignment_of(type_.element)
         case Array() | Traversable() | Texture():
             return 8
@@ -121,7 +122,7 @@ def dtype_of(type_: Type) -> np.dtype[np.void] | np.dtype[np.generic]:
                     "itemsize": layout.size,
                 }
             )
-        case FixedArray():
+        case FixedArray() | CoopVec():
             return np.dtype((dtype_of(type_.element), (type_.size,)))
         case Array():
             return np.dtype([("data", np.uint64), ("shape", np.uint64, (type_.rank,))])
@@ -146,7 +147,7 @@ def payload_words(type_: Type) -> int:
             return payload_words(type_.element) * type_.size
         case Traversable() | Texture():
             return HANDLE_SIZE // WORD_SIZE
-        case Array() | Tuple() | Void():
+        case Array() | CoopVec() | Tuple() | Void():
             raise AssertionError(f"{type_} cannot travel in payload words")
 
 

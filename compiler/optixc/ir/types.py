@@ -97,6 +97,17 @@ class FixedArray:
 
 
 @dataclass(frozen=True)
+class CoopVec:
+    """A cooperative vector: `size` numbers of one type, a value of locals, parameters and results, never a part of a struct or array."""
+
+    element: Scalar
+    size: int
+
+    def __str__(self) -> str:
+        return f"CoopVec[{self.element}, {self.size}]"
+
+
+@dataclass(frozen=True)
 class Array:
     """A view of host memory with `rank` axes: `{T* data; uint64_t shape[rank];}`, C-contiguous."""
 
@@ -141,7 +152,7 @@ class Void:
         return "None"
 
 
-Type = Scalar | Vector | Matrix | Struct | FixedArray | Array | Tuple | Traversable | Texture | Void
+Type = Scalar | Vector | Matrix | Struct | FixedArray | CoopVec | Array | Tuple | Traversable | Texture | Void
 
 BOOL = Scalar(ScalarKind.BOOL, 8)
 INT8 = Scalar(ScalarKind.INT, 8)

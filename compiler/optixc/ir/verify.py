@@ -54,6 +54,7 @@ from optixc.ir.types import (
     UINT64,
     VOID,
     Array,
+    CoopVec,
     FixedArray,
     Matrix,
     Scalar,
@@ -263,7 +264,7 @@ def _item(expression: IndexRef | TupleItem | ElementRef | ArrayShape) -> Iterato
 
 def _item_type(base: Type) -> Type | None:
     match base:
-        case FixedArray():
+        case FixedArray() | CoopVec():
             return base.element
         case Vector():
             return base.element
@@ -303,6 +304,9 @@ def _construct(construct: Construct) -> Iterator[str]:
                 yield f"{construct.type} made of other types"
         case FixedArray():
             if len(construct.arguments) not in (0, construct.type.size):
+                yield f"{construct.type} made of {len(construct.arguments)} elements"
+        case CoopVec():
+            if len(construct.arguments) not in (0, 1, construct.type.size):
                 yield f"{construct.type} made of {len(construct.arguments)} elements"
         case Matrix():
             pass

@@ -12,6 +12,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field
 
 from optixc.ir.intrinsic_rows import ATOMIC_NAMES
+from optixc.ir.intrinsic_rows_coop_vec import MEMORY_ARGUMENTS
 from optixc.ir.nodes import (
     Assign,
     CallCallable,
@@ -136,6 +137,8 @@ class _Search:
                 self._use_whole(function, arguments, span)
                 if name in ATOMIC_NAMES:
                     self._write(function, arguments[0], span)
+                elif name in MEMORY_ARGUMENTS:
+                    self._note(self.writes, function, arguments[MEMORY_ARGUMENTS[name]], span)
             case Trace(payload=payload, span=span) if payload is not None:
                 self._write(function, payload, span)
             case _:

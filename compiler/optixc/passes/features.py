@@ -25,6 +25,7 @@ from optixc.ir.nodes import (
     While,
 )
 from optixc.ir.programs import ProgramKind
+from optixc.ir.types import CoopVec
 from optixc.ir.walk import expressions, statements
 from optixc.source import Span
 
@@ -78,6 +79,7 @@ def features(pipeline: Pipeline) -> Features:
             _first(pipeline, "exceptions thrown", lambda s: isinstance(s, CallIntrinsic) and s.name == "throw_exception"),
             _first(pipeline, "atomics", lambda s: isinstance(s, CallIntrinsic) and s.name in ATOMIC_NAMES),
             _first_expression(pipeline, "textures", lambda e: isinstance(e, IntrinsicCall) and e.name.startswith("tex")),
+            _coop_vecs(pipeline),
             _first(pipeline, "print", lambda s: isinstance(s, Print)),
             _first(pipeline, "loops that poll for cancellation", lambda s: isinstance(s, While | ForRange) and polls(s)),
             _option("assertions", options.debug or options.validation, _first(pipeline, "", lambda s: isinstance(s, Assert)).span),
@@ -125,6 +127,16 @@ def _first_expression(pipeline: Pipeline, name: str, matches: Callable[[Expr], b
             if matches(expression):
                 return Feature(name, True, getattr(expression, "span", None))
     return Feature(name, False)
+
+
+def _coop_vecs(pipeline: Pipeline) -> Feature:
+    """A local, parameter or result that is a cooperative vector; whatever uses one has one."""
+    for function in _functions(pipeline):
+        locals_ = (*(parameter.local for parameter in function.parameters), *function.locals)
+        found = any(isinstance(type_, CoopVec) for type_ in (function.result, *(local.type for local in locals_)))
+        if found or any(isinstance(expression.type, CoopVec) for expression in expressions(function.body)):
+            return Feature("cooperative vectors", True, function.span)
+    return Feature("cooperative vectors", False)
 
 
 def _hit_objects(pipeline: Pipeline) -> Feature:

@@ -7,6 +7,8 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+from optixc.ir.intrinsic_rows import INTRINSICS
+from optixc.ir.intrinsics import Effect
 from optixc.ir.nodes import Assign, CallCallable, CallHelper, CallIntrinsic, ForRange, Function, LocalRef, Pipeline, Stmt
 from optixc.ir.walk import Body, called_helpers, map_blocks, operands, place_root, statements, subexpressions
 
@@ -84,6 +86,8 @@ def _without(body: Body, unread: set[str]) -> Body:
                 continue
         elif isinstance(statement, CallHelper | CallIntrinsic | CallCallable):
             is_unread = statement.target is not None and statement.target.name in unread
+            if is_unread and isinstance(statement, CallIntrinsic) and INTRINSICS[statement.name].effect is Effect.READS:
+                continue
             statement = replace(statement, target=None) if is_unread else statement
         result.append(map_blocks(statement, lambda block: _without(block, unread)))
     same = len(result) == len(body) and all(a is b for a, b in zip(result, body, strict=True))

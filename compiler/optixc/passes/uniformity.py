@@ -200,6 +200,9 @@ class _FunctionAnalysis:
                 self._returns(value, path)
             case CallHelper():
                 self._call(statement, path)
+            case CallIntrinsic(name=name, target=target) if INTRINSICS[name].effect is Effect.READS:
+                if target is not None:
+                    self._assigned(target.name, any(self.varies(one) for one in statement.arguments), path)
             case CallIntrinsic(target=target) | CallCallable(target=target):
                 if target is not None:
                     self._assigned(target.name, True, path)

@@ -112,6 +112,11 @@ template <int SCALE> OXRT_INLINE NativeInt8 gatherNative(const int32_t* base, Na
 }
 #endif
 
+#ifdef __F16C__
+/* What binary16 keeps of each number. */
+OXRT_INLINE NativeFloat8 roundToHalfNative(NativeFloat8 a) { return __builtin_ia32_vcvtph2ps256(__builtin_ia32_vcvtps2ph256(a, 0)); }
+#endif
+
 }  // namespace OXRT_ISA
 }  // namespace oxrt
 

@@ -164,6 +164,12 @@ OXRT_INLINE NativeLong8 gatherAddressNative(const int64_t*, NativeUlong8 address
                                                    m, 1));
 }
 
+/* What binary16 keeps of each number. */
+OXRT_INLINE NativeFloat16 roundToHalfNative(NativeFloat16 a) {
+    const NativeHalf16 rounded = __builtin_ia32_vcvtps2ph512_mask(a, 0, NativeHalf16{}, 0xffff);
+    return __builtin_ia32_vcvtph2ps512_mask(rounded, NativeFloat16{}, 0xffff, CURRENT_ROUNDING);
+}
+
 }  // namespace OXRT_ISA
 }  // namespace oxrt
 

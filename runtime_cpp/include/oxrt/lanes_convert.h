@@ -105,20 +105,20 @@ template <int W> OXRT_INLINE Lanes<uint32_t, W> saturate(Lanes<float, W> a, uint
     return select(positive >= 4294967296.0f, 0xffffffffu, select(isLarge, whole + 0x80000000u, whole));
 }
 
-/* What arithmetic uses for a storage number. */
-template <class T> struct WidenedNumber { using Type = T; };
-template <> struct WidenedNumber<int8_t> { using Type = int32_t; };
-template <> struct WidenedNumber<int16_t> { using Type = int32_t; };
-template <> struct WidenedNumber<uint8_t> { using Type = uint32_t; };
-template <> struct WidenedNumber<uint16_t> { using Type = uint32_t; };
-template <> struct WidenedNumber<half> { using Type = float; };
-template <class T> inline constexpr bool isStorage = !isSame<T, typename WidenedNumber<T>::Type>;
-
 /* The numbers that the storage type To holds, in lanes of its widened type. */
 template <class To, class From, int W> requires isStorage<To>
 OXRT_INLINE Lanes<typename WidenedNumber<To>::Type, W> convert(Lanes<From, W> a) {
     using Widened = typename WidenedNumber<To>::Type;
-    return mapLanes([](From x) { return Widened(convert<To>(x)); }, a);
+#ifdef __F16C__
+    if constexpr (isSame<To, half> && isSame<From, float>)
+        return Lanes<float, W>(roundToHalfNative(a.v));
+    else
+#endif
+    if constexpr (!isFloating<To> && !isFloating<From> && !isSame<From, bool> && sizeof(From) == 4) {
+        constexpr Widened places = Widened(32 - 8 * sizeof(To));
+        return bitCast<Widened>(a) << places >> places;
+    } else
+        return mapLanes([](From x) { return Widened(convert<To>(x)); }, a);
 }
 
 template <class To, class From, int W> requires(!isStorage<To>) OXRT_INLINE Lanes<To, W> convert(Lanes<From, W> a) {

@@ -238,7 +238,8 @@ template <int W, class T, int RANK, class... I> OXRT_INLINE T loadShared(Lanes<b
 template <class T, int SIZE> OXRT_INLINE T& itemOf(FixedArray<T, SIZE>& array, int i) { return array.items[i]; }
 template <class T, int N> OXRT_INLINE T& itemOf(Vector<T, N>& vector, int i) { return vector[i]; }
 template <class T, int R, int C> OXRT_INLINE Vector<T, C>& itemOf(Matrix<T, R, C>& matrix, int i) { return matrix[i]; }
-template <class T> inline constexpr int itemCount = vectorSize<T> + fixedArraySize<T>;
+template <class T, int N, class X> OXRT_INLINE X& itemOf(CoopVec<T, N, X>& vector, int i) { return vector.items[i]; }
+template <class T> inline constexpr int itemCount = vectorSize<T> + fixedArraySize<T> + coopVecSize<T>;
 template <class T, int R, int C> inline constexpr int itemCount<Matrix<T, R, C>> = R;
 
 /* Item `index`, zero where there is none. */
@@ -283,6 +284,12 @@ template <class T, int W, int SIZE> OXRT_INLINE FixedArray<T, SIZE> inLane(const
     FixedArray<T, SIZE> result;
     for (int i = 0; i < SIZE; ++i)
         result.items[i] = inLane(value.items[i], lane);
+    return result;
+}
+template <class T, int N, int W> OXRT_INLINE CoopVec<T, N> inLane(const CoopVec<T, N, Lanes<typename WidenedNumber<T>::Type, W>>& value, int lane) {
+    CoopVec<T, N> result;
+    for (int i = 0; i < N; ++i)
+        result.items[i] = T(value.items[i][lane]);
     return result;
 }
 template <class T, int RANK, int W> OXRT_INLINE Array<T, RANK> inLane(const VaryingArray<Array<T, RANK>, W>& value, int lane) {

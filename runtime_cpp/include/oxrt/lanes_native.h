@@ -17,6 +17,9 @@ typedef float NativeFloat4 __attribute__((vector_size(16)));
 typedef int32_t NativeInt4 __attribute__((vector_size(16)));
 typedef uint32_t NativeUint4 __attribute__((vector_size(16)));
 
+typedef short NativeHalf8 __attribute__((vector_size(16)));
+typedef short NativeHalf16 __attribute__((vector_size(32)));
+
 /* The register that holds W lanes of 4 bytes, or half of W lanes of 8 bytes. */
 template <class T, int W> struct NativeVector;
 

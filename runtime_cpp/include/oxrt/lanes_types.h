@@ -23,6 +23,7 @@ template <Scalar T, int N, int W> struct WideType<Vector<T, N>, W> { using Type 
 template <Scalar T, int R, int C, int W> struct WideType<Matrix<T, R, C>, W> { using Type = Matrix<Wide<T, W>, R, C>; };
 template <class T, int W> concept HasWide = requires { typename WideType<T, W>::Type; };
 template <class T, int SIZE, int W> requires HasWide<T, W> struct WideType<FixedArray<T, SIZE>, W> { using Type = FixedArray<Wide<T, W>, SIZE>; };
+template <class T, int N, int W> struct WideType<CoopVec<T, N>, W> { using Type = CoopVec<T, N, Lanes<typename WidenedNumber<T>::Type, W>>; };
 template <class T, int RANK, int W> struct WideType<Array<T, RANK>, W> { using Type = VaryingArray<Array<T, RANK>, W>; };
 template <class... T, int W> struct WideType<Tuple<T...>, W> { using Type = Tuple<Wide<T, W>...>; };
 template <class T, int W> struct WideType<Word<T>, W> { using Type = Wide<T, W>; };
@@ -76,6 +77,9 @@ template <class F, class First, class... Rest> OXRT_INLINE void eachPart(const F
             eachPart(f, first.rows[i], rest.rows[i]...);
     } else if constexpr (fixedArraySize<First> > 0) {
         for (int i = 0; i < fixedArraySize<First>; ++i)
+            eachPart(f, first.items[i], rest.items[i]...);
+    } else if constexpr (coopVecSize<First> > 0) {
+        for (int i = 0; i < coopVecSize<First>; ++i)
             eachPart(f, first.items[i], rest.items[i]...);
     } else if constexpr (isSame<First, Tuple<>>) {
     } else if constexpr (isTuple<First>) {

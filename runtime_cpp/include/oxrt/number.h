@@ -36,6 +36,17 @@ template <Scalar T> OXRT_INLINE constexpr T select(bool mask, T ifTrue, T ifFals
 /* f applied to every lane on its own: the way to reach code that exists for scalars only. */
 template <class F, Scalar... T> OXRT_INLINE auto mapLanes(F f, T... values) { return f(values...); }
 
+/* ---- storage numbers ---------------------------------------------------------------------------------------------------------- */
+
+/* What arithmetic uses for a storage number. */
+template <class T> struct WidenedNumber { using Type = T; };
+template <> struct WidenedNumber<int8_t> { using Type = int32_t; };
+template <> struct WidenedNumber<int16_t> { using Type = int32_t; };
+template <> struct WidenedNumber<uint8_t> { using Type = uint32_t; };
+template <> struct WidenedNumber<uint16_t> { using Type = uint32_t; };
+template <> struct WidenedNumber<half> { using Type = float; };
+template <class T> inline constexpr bool isStorage = !isSame<T, typename WidenedNumber<T>::Type>;
+
 /* ---- conversions -------------------------------------------------------------------------------------------------------------- */
 
 template <class To, class From> struct ScalarConverter {

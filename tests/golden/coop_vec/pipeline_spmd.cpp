@@ -1,0 +1,100 @@
+/* Made by optixc. Compiled features:
+   cooperative vectors: shader.py:28
+*/
+#include <oxrt/device.h>
+#include <oxrt/coop_vec.h>
+
+#include <oxrt/lanes_trace.h>
+#include <oxrt/lanes_coop_vec.h>
+
+namespace {
+
+enum { LANES = 16 };
+template <class T> using Wide = oxrt::Wide<T, LANES>;
+using Mask = oxrt::Lanes<bool, LANES>;
+using Lanes = oxrt::LanesThread<LANES>;
+using Rays = oxrt::RayLanes<LANES>;
+
+struct Params {
+    oxrt::Array<oxrt::float3, 2> image;
+    oxrt::Array<uint8_t, 1> network;
+    oxrt::Array<uint8_t, 1> gradients;
+    oxrt::Array<oxrt::half, 1> sums;
+    uint32_t layer;
+};
+
+struct ParamsWide;
+}  // namespace
+template <> struct oxrt::WideType<Params, 16> { using Type = ParamsWide; };
+namespace {
+
+struct ParamsWide {
+    using IsWideStruct = void;
+    Wide<oxrt::Array<oxrt::float3, 2>> image;
+    Wide<oxrt::Array<uint8_t, 1>> network;
+    Wide<oxrt::Array<uint8_t, 1>> gradients;
+    Wide<oxrt::Array<oxrt::half, 1>> sums;
+    Wide<uint32_t> layer;
+    template <class F, class... S> static OXRT_INLINE void each(const F& f,
+            S&... s) { f(s.image...); f(s.network...); f(s.gradients...); f(s.sums...); f(s.layer...); }
+};
+
+/* Program numbers, as SBT records hold them. */
+namespace number {
+enum : int32_t { raygen_infers_and_learns };
+}
+
+Wide<oxrt::CoopVec<oxrt::half, 32>> relu_lanes([[maybe_unused]] Lanes& thread, [[maybe_unused]] Mask mask,
+        const Wide<oxrt::CoopVec<oxrt::half, 32>>& v);
+
+#line 23 "shader.py"
+Wide<oxrt::CoopVec<oxrt::half, 32>> relu_lanes([[maybe_unused]] Lanes& thread, [[maybe_unused]] Mask mask,
+        const Wide<oxrt::CoopVec<oxrt::half, 32>>& v) {
+#line 24 "shader.py"
+    return oxrt::coopVecMax(v, 0.0f);
+}
+
+#line 28 "shader.py"
+void raygen_infers_and_learns_lanes([[maybe_unused]] Lanes& thread, [[maybe_unused]] Mask mask) {
+    const Params& params = oxrt::launchParams<Params>(thread);
+#line 29 "shader.py"
+    Wide<oxrt::uint3> i = oxrt::getLaunchIndex(thread);
+    Wide<oxrt::CoopVec<oxrt::half, 8>> v = oxrt::spread<16>(oxrt::coopVecOf<oxrt::CoopVec<oxrt::half, 8>>(1.0f));
+    v[0] = oxrt::convert<oxrt::half>(oxrt::convert<float>(i.x));
+    Wide<oxrt::CoopVec<oxrt::half, 32>> first = oxrt::coopVecMatMul<oxrt::CoopVec<oxrt::half, 32>, oxrt::MatrixElement::FLOAT16,
+            oxrt::MatrixElement::FLOAT16, oxrt::MatrixLayout::INFERENCING_OPTIMAL, false>(oxrt::spansOf(mask), v, params.network, 0u, 0u,
+            params.network, 1024u);
+    Wide<oxrt::CoopVec<oxrt::half, 32>> hidden = relu_lanes(thread, mask, first);
+#line 37 "shader.py"
+    uint32_t size = 2048u;
+    Wide<oxrt::CoopVec<oxrt::half, 3>> out = oxrt::coopVecMatMul<oxrt::CoopVec<oxrt::half, 3>, oxrt::MatrixElement::FLOAT16,
+            oxrt::MatrixElement::FLOAT16, oxrt::MatrixLayout::INFERENCING_OPTIMAL, false>(oxrt::spansOf(mask), hidden, params.network,
+            2048u + i.x * size, 0u);
+#line 42 "shader.py"
+    oxrt::CoopVec<oxrt::half, 3> shared = oxrt::coopVecLoad<oxrt::CoopVec<oxrt::half, 3>>(oxrt::anySpan, params.network, params.layer);
+    Wide<oxrt::CoopVec<oxrt::half, 3>> delta = oxrt::coopVecMul(oxrt::coopVecSub(out, shared), oxrt::coopVecOf<oxrt::CoopVec<oxrt::half,
+            3>>(0.5f, 0.25f, 1.0f));
+#line 44 "shader.py"
+    oxrt::coopVecOuterProductAccumulate(oxrt::spansOf(mask), delta, hidden, params.gradients, params.layer);
+    oxrt::coopVecReduceSumAccumulate(oxrt::spansOf(mask), delta, params.sums, 0u);
+    Wide<oxrt::CoopVec<float, 3>> whole = oxrt::coopVecCvt<float>(out);
+    oxrt::store<LANES>(mask, Wide<oxrt::float3>(whole[0], whole[1], whole[2]), params.image, i.y, i.x);
+}
+
+#line 85 "pipeline.cpp"
+void run_raygen_infers_and_learns(OxrtThread* thread, const OxrtTile* tile) {
+    oxrt::runBlocks<LANES>(*thread, *tile, [](Lanes& lanes, Mask mask) {
+        raygen_infers_and_learns_lanes(lanes, mask);
+    });
+}
+
+const OxrtProgram programs[] = {
+    {"__raygen__infers_and_learns", OXRT_KIND_RAYGEN, 0, run_raygen_infers_and_learns},
+};
+const OxrtPipelineVariant variants[] = {{oxrt::BUILT_ISA, 16, programs, 1}};
+static_assert(sizeof(Params) == 80);
+
+}  // namespace
+
+extern "C" __attribute__((visibility("default"))) const OxrtPipelineBinary oxrt_pipeline_v1 = {
+    OXRT_PIPELINE_ABI, 1, variants, 80, 1, "0.1.0"};
