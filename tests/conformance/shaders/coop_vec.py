@@ -79,13 +79,13 @@ def __raygen__elements():
 
 
 @ox.device
-def doubled(v: Floats) -> Floats:
+def doubled(v: ox.CoopVec[ox.float32, 24]) -> ox.CoopVec[ox.float32, 24]:
     v[0] = 100.0
     return ox.coop_vec_add(v, v)
 
 
 @ox.program
-def __direct_callable__weighted(v: Floats, weight: float) -> Floats:
+def __direct_callable__weighted(v: ox.CoopVec[ox.float32, 24], weight: float) -> ox.CoopVec[ox.float32, 24]:
     return ox.coop_vec_mul(v, Floats(weight))
 
 
