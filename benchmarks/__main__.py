@@ -81,8 +81,9 @@ def _measure_others(arguments: argparse.Namespace, parts: list[str], results: Re
     if "compile" in parts:
         results.compiles = compile_time.measure_all(arguments.lanes, min(arguments.rounds, 5))
     if "peers" in parts:
-        results.peers, skipped = peers.measure_all(arguments.threads, arguments.rounds)
-        results.skipped += skipped
+        found = peers.measure_all(arguments.threads, arguments.rounds, Clock(arguments.clock))
+        results.peers = found.results
+        results.skipped += found.skipped
 
 
 def main() -> None:

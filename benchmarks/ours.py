@@ -10,7 +10,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from types import ModuleType
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 
@@ -168,7 +168,9 @@ _SETUPS: dict[str, Callable[[_Maker, Scene], Programs]] = {
 }
 
 
-def ours(context: ox.DeviceContext, scene: Scene, workload: Workload, lanes: int, compiler: str | None = None) -> Ours:
+def ours(
+    context: ox.DeviceContext, scene: Scene, workload: Workload, lanes: int | Literal["auto"], compiler: str | None = None
+) -> Ours:
     """A workload at `lanes` lanes, compiled with `compiler` or the one that optixc chooses."""
     shader = shader_module(workload.source)
     programs = _SETUPS[workload.name](_Maker(context, shader), scene)

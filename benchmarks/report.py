@@ -10,6 +10,7 @@ from benchmarks.compile_time import CompileTime
 from benchmarks.launch_overhead import LaunchTime
 from benchmarks.limits import Limit
 from benchmarks.memory import PeakMemory
+from benchmarks.peers import PeerResult
 from benchmarks.rays import Row
 from benchmarks.workloads import WORKLOADS
 
@@ -24,7 +25,7 @@ class Results:
     compiles: list[CompileTime] = field(default_factory=list)
     launches: list[LaunchTime] = field(default_factory=list)
     memory: list[PeakMemory] = field(default_factory=list)
-    peers: list[dict[str, object]] = field(default_factory=list)
+    peers: list[PeerResult] = field(default_factory=list)
     skipped: list[str] = field(default_factory=list)
 
     def write(self, path: Path) -> None:
@@ -130,8 +131,11 @@ def markdown(results: Results) -> str:
     if results.rows:
         parts += ["## Speed-up over the best hand-written scalar kernel", summary(results.rows)]
     if results.peers:
-        lines = [[str(one["name"]), str(one["threads"]), f"{one['mrays_per_second']:.2f}", str(one["shader"])] for one in results.peers]
-        parts.append("## Primary rays in other systems\n\n" + table(["system", "threads", "Mrays/s", "shader"], lines))
+        lines = [
+            [one.name, str(one.threads), f"{one.mrays_per_second:.2f}", "yes" if one.shader else "no", f"{one.ours:.2f}"] for one in results.peers
+        ]
+        header = ["system", "threads", "Mrays/s", "runs the user's shading", "speed of optixc over it"]
+        parts.append("## Primary rays in other systems\n\n" + table(header, lines))
     parts += _others(results)
     if results.limits:
         parts += ["## Pure traversal of the same rays", _limits(results)]

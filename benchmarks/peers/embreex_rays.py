@@ -14,6 +14,8 @@ if importlib.util.find_spec("embreex") is not None:
     from embreex import rtcore_scene
     from embreex.mesh_construction import TriangleMesh
 
+SHADER = False
+
 
 def missing() -> str | None:
     """What has to be installed."""

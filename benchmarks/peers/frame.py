@@ -13,6 +13,7 @@ from benchmarks.scenes import IMAGE_SIZE, Camera, Floats, Uints, mesh_scene
 class Frame:
     """A scene of benchmark_scenes.json seen by its first camera."""
 
+    scene: str
     vertices: Floats
     triangles: Uints
     normals: Floats
@@ -22,7 +23,7 @@ class Frame:
     def of(name: str) -> Frame:
         """The frame of the scene called `name`."""
         scene = mesh_scene(name)
-        return Frame(scene.vertices, scene.triangles, scene.normals, scene.camera)
+        return Frame(name, scene.vertices, scene.triangles, scene.normals, scene.camera)
 
     def directions(self) -> Floats:
         """Unit directions through the pixels' centres, (1024, 1024, 3)."""

@@ -17,6 +17,8 @@ if importlib.util.find_spec("mitsuba") is not None:
 
     mitsuba.set_variant("llvm_ad_rgb")
 
+SHADER = True
+
 
 def missing() -> str | None:
     """What has to be installed."""

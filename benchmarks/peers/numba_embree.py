@@ -21,6 +21,8 @@ COHERENT = 1 << 16
 if importlib.util.find_spec("numba") is not None:
     import numba
 
+SHADER = True
+
 
 def missing() -> str | None:
     """What has to be installed."""

@@ -13,6 +13,8 @@ from benchmarks.peers.frame import Frame
 if importlib.util.find_spec("open3d") is not None:
     import open3d
 
+SHADER = False
+
 
 def missing() -> str | None:
     """What has to be installed."""

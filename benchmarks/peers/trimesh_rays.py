@@ -14,6 +14,8 @@ if importlib.util.find_spec("trimesh") is not None:
     import trimesh
     from trimesh.ray import ray_pyembree
 
+SHADER = False
+
 
 def missing() -> str | None:
     """What has to be installed."""
