@@ -132,7 +132,8 @@ def markdown(results: Results) -> str:
         parts += ["## Speed-up over the best hand-written scalar kernel", summary(results.rows)]
     if results.peers:
         lines = [
-            [one.name, str(one.threads), f"{one.mrays_per_second:.2f}", "yes" if one.shader else "no", f"{one.ours:.2f}"] for one in results.peers
+            [one.name, str(one.threads), f"{one.mrays_per_second:.2f}", "yes" if one.shader else "no", f"{one.ours:.2f}"]
+            for one in results.peers
         ]
         header = ["system", "threads", "Mrays/s", "runs the user's shading", "speed of optixc over it"]
         parts.append("## Primary rays in other systems\n\n" + table(header, lines))

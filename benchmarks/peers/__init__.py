@@ -60,7 +60,7 @@ class _Process:
     def __init__(self, peer: str, scene: str, threads: int, clock: Clock) -> None:
         self.peer = peer
         self.seconds: list[float] = []
-        self._errors = tempfile.TemporaryFile("w+")
+        self._errors = tempfile.TemporaryFile("w+")  # noqa: SIM115 - `end` closes it
         command = [sys.executable, "-c", _CODE, str(ROOT), peer, scene, str(threads), clock.value]
         self._process = subprocess.Popen(
             command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=self._errors, text=True, bufsize=1
