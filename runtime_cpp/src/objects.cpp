@@ -74,7 +74,7 @@ std::shared_ptr<Object> lookUp(Table<Object> Objects::* table, const void* key, 
     if (!key) fail(result, "the %s is NULL", name);
     const std::lock_guard lock(objects().mutex);
     const auto entry = (objects().*table).find(key);
-    if (entry == (objects().*table).end()) fail(result, "the %s does not exist (it was destroyed, or the pointer is not a %s)", name, name);
+    if (entry == (objects().*table).end()) fail(result, "the %s does not exist (it was destroyed, or the pointer is of something else)", name);
     return entry->second;
 }
 

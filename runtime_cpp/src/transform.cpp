@@ -40,6 +40,9 @@ void checkKeys(const OxrtTransformOptions& options)
         const float* q = values + firstOfQuaternion;
         if (q[0] == 0 && q[1] == 0 && q[2] == 0 && q[3] == 0)
             fail(OXRT_ERROR_INVALID_VALUE, "key %zu: the quaternion has length zero; no rotation is (0, 0, 0, 1)", key);
+        // Kernels normalise in binary32.
+        if (!std::isnormal(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]))
+            fail(OXRT_ERROR_INVALID_VALUE, "key %zu: the squared length of the quaternion is no number of binary32; normalise it", key);
     }
 }
 

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import threading
 import warnings
 from collections.abc import Callable, Iterator
 from typing import Any
 
 import numpy as np
 import pytest
+from shaders import look_down as shader
 
 import optixc as ox
 
@@ -47,11 +49,11 @@ def triangle(context: ox.DeviceContext, **more: Any) -> ox.Accel:
     return context.accel_build([ox.BuildInputTriangles(POINTS, CORNERS)], **more)
 
 
-def turning(context: ox.DeviceContext, **more: Any) -> Any:
-    """A transform whose second key has no quaternion."""
+def turning(quaternion: Any) -> Callable[[ox.DeviceContext], Any]:
+    """A transform with this quaternion in its second key."""
     keys = SRT.copy()
-    keys[1, 9:13] = 0
-    return context.srt_motion_transform(triangle(context), keys, ox.MotionOptions(2))
+    keys[1, 9:13] = quaternion
+    return lambda context: context.srt_motion_transform(triangle(context), keys, ox.MotionOptions(2))
 
 
 def matrices(begin: float, end: float, keys: int = 2) -> Callable[[ox.DeviceContext], Any]:
@@ -104,7 +106,13 @@ REFUSED: dict[str, tuple[Callable[[ox.DeviceContext], Any], str]] = {
     "reversed transform": (matrices(1.0, 0.0), "must be before"),
     "transform of no time": (matrices(0.5, 0.5), "must be before"),
     "transform of one key": (matrices(0.0, 1.0, keys=1), "at least 2"),
-    "quaternion of length zero": (turning, "length zero"),
+    "quaternion of length zero": (turning(0), "length zero"),
+    "quaternion too short for its square": (turning(1e-30), "squared length"),
+    "quaternion too long for its square": (turning(1e30), "squared length"),
+    "quaternion without a number": (turning(np.nan), "not finite"),
+    "time that is no float": (moving(end=10**400), "are numbers, not 0.0 and 1000"),
+    "transform beyond binary32": (placed(transform=np.eye(3, 4) * 1e300), "not finite"),
+    "keys beyond binary32": (lambda c: c.matrix_motion_transform(triangle(c), np.full((2, 3, 4), 1e300)), "not finite"),
     "deleted child": (above_a_dead_child, "not alive"),
     "cycle": (under_itself, "keeps the traversables"),
     "graph of depth 32": (too_deep, "32 traversables deep"),
@@ -210,6 +218,39 @@ def test_any_value_is_taken_or_named(context: ox.DeviceContext, kind: str, field
 def test_any_argument_is_taken_or_named(context: ox.DeviceContext, call: Callable[[ox.DeviceContext, Any], Any]) -> None:
     for value in strange(POINTS):
         try_it(lambda value=value: call(context, value))
+
+
+def test_what_launches_use_may_be_destroyed_meanwhile(context: ox.DeviceContext) -> None:
+    # Each launch sees whole structures or none; parents keep what their children were.
+    module, create = context.module_create(shader), context.program_group_create
+    raygen, hit = create(raygen=module["__raygen__look"]), create(closesthit=module["__closesthit__seen"])
+    miss = create(miss=None)
+    pipeline = context.pipeline_create([raygen, miss, hit])
+    table = ox.ShaderBindingTable(raygen=raygen.record(), miss=[miss.record()], hitgroup=[hit.record()])
+    handles = np.zeros(8, np.uint64)
+    results, stop = [], threading.Event()
+
+    def launch() -> None:
+        while not stop.is_set():
+            seen = np.zeros(4096, np.uint32)
+            pipeline.launch(shader.Params(scenes=handles, seen=seen), table, 4096)
+            results.append(seen)
+
+    thread = threading.Thread(target=launch)
+    thread.start()
+    for number in range(300):
+        child = triangle(context)
+        parent = context.accel_build([ox.BuildInputInstances([ox.Instance(child)])])
+        above = context.accel_build([ox.BuildInputInstances([context.static_transform(parent, np.eye(3, 4))])])
+        handles[number % 8] = int(above.handle)
+        child.destroy()
+        parent.destroy()
+        if number % 3 == 0:
+            above.destroy()
+    stop.set()
+    thread.join()
+    assert results
+    assert set(np.unique(np.concatenate(results)).tolist()) <= {0, 1}
 
 
 def try_it(call: Callable[[], Any]) -> None:

@@ -42,8 +42,8 @@ class MotionOptions:
         target.flags = take_whole(self.flags, 0, _ALL_MOTION_FLAGS, "MotionOptions.flags combines MotionFlags: it")
         try:
             times = float(self.time_begin), float(self.time_end)
-        except (TypeError, ValueError) as error:
-            raise InvalidValueError(f"the times of MotionOptions are numbers, not {self.time_begin!r} and {self.time_end!r}") from error
+        except (TypeError, ValueError, OverflowError) as error:
+            raise InvalidValueError(f"the times of MotionOptions are numbers, not {self.time_begin!r:.40} and {self.time_end!r:.40}") from error
         target.timeBegin, target.timeEnd = times
 
 
@@ -390,7 +390,8 @@ def _as_words(value: Any) -> Any:
 def take_transform(value: Any, where: str) -> np.ndarray[Any, Any]:
     """A 3x4 matrix as float32, from anything that numpy makes one of."""
     try:
-        array = np.require(value, np.float32, ("A", "C"))
+        with np.errstate(all="ignore"):
+            array = np.require(value, np.float32, ("A", "C"))
     except (TypeError, ValueError) as error:
         raise InvalidValueError(f"{where} takes a 3x4 matrix, not {type(value).__name__}") from error
     if array.shape not in ((3, 4), (12,)):

@@ -76,7 +76,8 @@ def srt_motion_transform(context: Context, child: Any, keys: Any, motion_options
 
 def _keys(keys: Any, shape: tuple[int, ...], floats: int, where: str) -> np.ndarray[Any, Any]:
     try:
-        array = np.require(keys, np.float32, ("A", "C"))
+        with np.errstate(all="ignore"):
+            array = np.require(keys, np.float32, ("A", "C"))
     except (TypeError, ValueError) as error:
         raise InvalidValueError(f"{where} takes an array of keys, not {type(keys).__name__}") from error
     if array.ndim < 1 or array.shape[1:] not in (shape, (floats,)):

@@ -59,16 +59,16 @@ template <bool ANY, class Outer> OXRT_INLINE void askStructure(GraphWalk& walk, 
 
 /* Goes through transforms to the next structure and asks it. The ray is given in the space of `view`'s parent. */
 template <class Programs, bool ANY, class Outer>
-OXRT_INLINE void descend(GraphWalk& walk, const OxrtTraversableView* view, float3 origin, float3 direction, const RTCRay& parent, Outer& outer) {
+OXRT_INLINE void descend(GraphWalk& walk, const OxrtTraversableView* view, Quad origin, Quad direction, const RTCRay& parent, Outer& outer) {
     const float time = walk.ray.time;
     for (; view->child; view = view->child) {
         if (view->type != OXRT_TRAVERSABLE_STATIC && (!Programs::usesTime || hasVanished(*view, time)))
             return; /* without motion in the pipeline, motion transforms are not there */
-        Affine inverse;
+        Columns inverse;
         if (!inverseAt(*view, time, inverse))
             return;
-        origin = transformPoint(inverse.m, origin);
-        direction = transformVector(inverse.m, direction);
+        origin = inverse.point(origin);
+        direction = inverse.vector(direction);
         walk.path.nodes[walk.path.size++] = view;
     }
     if (!view->scene)
@@ -79,8 +79,8 @@ OXRT_INLINE void descend(GraphWalk& walk, const OxrtTraversableView* view, float
     GraphQuery<ANY> query;
     RTCRay& ray = query.ray();
     EmbreeRow* rows = reinterpret_cast<EmbreeRow*>(&ray);
-    rows[0] = EmbreeRow{origin.x, origin.y, origin.z, parent.tnear};
-    rows[1] = EmbreeRow{direction.x, direction.y, direction.z, moves ? relativeTime(*view, time) : 0.0f};
+    rows[0] = EmbreeRow{origin[0], origin[1], origin[2], parent.tnear};
+    rows[1] = EmbreeRow{direction[0], direction[1], direction[2], moves ? relativeTime(*view, time) : 0.0f};
     ray.tfar = parent.tfar;
     ray.mask = parent.mask;
     ray.id = 0;
@@ -95,8 +95,9 @@ OXRT_INLINE void enterInstance(GraphWalk& walk, uint32_t index, const RTCRay& pa
     const OxrtInstanceView& instance = structure.instances[index];
     if (!(instance.visibilityMask & walk.ray.mask) || !instance.child || !instance.child->scene || walk.ray.isTerminated)
         return;
-    const float3 direction = transformVector(instance.worldToObject, {parent.dir_x, parent.dir_y, parent.dir_z});
-    if (direction.x == 0.0f && direction.y == 0.0f && direction.z == 0.0f)
+    const Columns inverse = columnsOf(instance.worldToObject);
+    const Quad direction = inverse.vector(quadAt(&parent.dir_x));
+    if (direction[0] == 0.0f && direction[1] == 0.0f && direction[2] == 0.0f)
         return; /* of a singular instance the inverse is zero */
     GraphPath& path = walk.path;
     const OxrtInstanceView* outerInstance = path.instance;
@@ -106,8 +107,7 @@ OXRT_INLINE void enterInstance(GraphWalk& walk, uint32_t index, const RTCRay& pa
     path.instance = &instance;
     path.instanceIndex = index;
     path.sbtOffset += instance.sbtOffset;
-    const float3 origin = transformPoint(instance.worldToObject, {parent.org_x, parent.org_y, parent.org_z});
-    descend<Programs, ANY>(walk, instance.child, origin, direction, parent, outer);
+    descend<Programs, ANY>(walk, instance.child, inverse.point(quadAt(&parent.org_x)), direction, parent, outer);
     path.structure = &structure;
     path.instance = outerInstance;
     path.instanceIndex = outerIndex;
@@ -169,7 +169,7 @@ template <class Programs, class Flags> __attribute__((noinline)) bool walkCloses
     ray.committedKind = NO_REPORT;
     found.hit.geomID = RTC_INVALID_GEOMETRY_ID;
     const RTCRay world = found.ray;
-    descend<Programs, false>(walk, ray.root, ray.origin, ray.direction, world, found);
+    descend<Programs, false>(walk, ray.root, quadAt(&world.org_x), quadAt(&world.dir_x), world, found);
     if (found.hit.geomID == RTC_INVALID_GEOMETRY_ID)
         return false;
     ray.path = &committed;
@@ -189,7 +189,7 @@ template <class Programs, class Flags> __attribute__((noinline)) bool walkAny(Gr
     setEmbreeRay(found, ray);
     ray.closestInEmbree = found.tfar;
     const RTCRay world = found;
-    descend<Programs, true>(walk, ray.root, ray.origin, ray.direction, world, found);
+    descend<Programs, true>(walk, ray.root, quadAt(&world.org_x), quadAt(&world.dir_x), world, found);
     return ray.isTerminated || found.tfar < 0.0f;
 }
 

@@ -45,27 +45,57 @@ OXRT_INLINE Affine composed(const Affine& outer, const Affine& inner) {
     return result;
 }
 
-/* False where there is no finite inverse. */
-OXRT_INLINE bool inverted(const Affine& matrix, Affine& inverse) {
-    const float* m = matrix.m;
-    const float c00 = m[5] * m[10] - m[6] * m[9];
-    const float c01 = m[6] * m[8] - m[4] * m[10];
-    const float c02 = m[4] * m[9] - m[5] * m[8];
-    const float scale = 1.0f / (m[0] * c00 + m[1] * c01 + m[2] * c02);
+/* Four numbers in a register: of points and vectors the fourth says nothing. */
+using Quad = float __attribute__((vector_size(16), may_alias, aligned(4)));
+
+OXRT_INLINE Quad quadAt(const float* numbers) {
+    Quad quad;
+    __builtin_memcpy(&quad, numbers, sizeof(quad));
+    return quad;
+}
+template <int LANE> OXRT_INLINE Quad spread(Quad quad) { return __builtin_shufflevector(quad, quad, LANE, LANE, LANE, LANE); }
+OXRT_INLINE Quad crossed(Quad a, Quad b) {
+    return __builtin_shufflevector(a, a, 1, 2, 0, 3) * __builtin_shufflevector(b, b, 2, 0, 1, 3) -
+           __builtin_shufflevector(a, a, 2, 0, 1, 3) * __builtin_shufflevector(b, b, 1, 2, 0, 3);
+}
+
+/* A 3x4 matrix by columns. Points and vectors go through it as transformPoint and transformVector have them, step by step. */
+struct Columns {
+    Quad x, y, z, origin;
+
+    OXRT_INLINE Quad vector(Quad v) const { return x * spread<0>(v) + y * spread<1>(v) + z * spread<2>(v); }
+    OXRT_INLINE Quad point(Quad p) const { return vector(p) + origin; }
+};
+OXRT_INLINE Columns columnsOf(const float* m) {
+    const Quad a = quadAt(m), b = quadAt(m + 4), c = quadAt(m + 8);
+    const Quad low = __builtin_shufflevector(a, b, 0, 4, 1, 5), high = __builtin_shufflevector(a, b, 2, 6, 3, 7);
+    return {__builtin_shufflevector(low, c, 0, 1, 4, 4), __builtin_shufflevector(low, c, 2, 3, 5, 5),
+            __builtin_shufflevector(high, c, 0, 1, 6, 6), __builtin_shufflevector(high, c, 2, 3, 7, 7)};
+}
+
+/* The inverse of the matrix with these rows; false where it is not finite. */
+OXRT_INLINE bool inverted(Quad a, Quad b, Quad c, Columns& inverse) {
+    const Quad minors = crossed(b, c);
+    const Quad parts = a * minors;
+    const float scale = 1.0f / (parts[0] + parts[1] + parts[2]);
     if (!(__builtin_fabsf(scale) < __builtin_inff()))
         return false;
-    float* i = inverse.m;
-    i[0] = c00 * scale;
-    i[1] = (m[2] * m[9] - m[1] * m[10]) * scale;
-    i[2] = (m[1] * m[6] - m[2] * m[5]) * scale;
-    i[4] = c01 * scale;
-    i[5] = (m[0] * m[10] - m[2] * m[8]) * scale;
-    i[6] = (m[2] * m[4] - m[0] * m[6]) * scale;
-    i[8] = c02 * scale;
-    i[9] = (m[1] * m[8] - m[0] * m[9]) * scale;
-    i[10] = (m[0] * m[5] - m[1] * m[4]) * scale;
-    for (int row = 0; row < 3; ++row)
-        i[4 * row + 3] = -(i[4 * row] * m[3] + i[4 * row + 1] * m[7] + i[4 * row + 2] * m[11]);
+    inverse.x = minors * scale;
+    inverse.y = crossed(c, a) * scale;
+    inverse.z = crossed(a, b) * scale;
+    inverse.origin = -(inverse.x * spread<3>(a) + inverse.y * spread<3>(b) + inverse.z * spread<3>(c));
+    return true;
+}
+OXRT_INLINE bool inverted(const Affine& matrix, Affine& inverse) {
+    Columns columns;
+    if (!inverted(quadAt(matrix.m), quadAt(matrix.m + 4), quadAt(matrix.m + 8), columns))
+        return false;
+    for (int row = 0; row < 3; ++row) {
+        inverse.m[4 * row] = columns.x[row];
+        inverse.m[4 * row + 1] = columns.y[row];
+        inverse.m[4 * row + 2] = columns.z[row];
+        inverse.m[4 * row + 3] = columns.origin[row];
+    }
     return true;
 }
 
@@ -92,6 +122,8 @@ OXRT_INLINE KeyPlace keyPlace(const OxrtTraversableView& view, float time) {
     const float last = float(intervals);
     const float raw = last * (time - view.timeBegin) / (view.timeEnd - view.timeBegin);
     const float position = !(raw > 0.0f) ? 0.0f : raw < last ? raw : last;
+    if (intervals == 1)
+        return {0, position};
     const uint32_t key = uint32_t(position);
     const uint32_t first = key < intervals ? key : intervals - 1;
     return {first, position - float(first)};
@@ -158,13 +190,29 @@ OXRT_INLINE bool inverseAt(const OxrtTraversableView& node, float time, Affine& 
         __builtin_memcpy(inverse.m, node.instances->worldToObject, sizeof(inverse.m));
     else if (node.type == OXRT_TRAVERSABLE_STATIC)
         __builtin_memcpy(inverse.m, node.transformKeys + 12, sizeof(inverse.m));
-    else if (node.type == OXRT_TRAVERSABLE_MATRIX_MOTION) {
-        Affine matrix;
-        blendKeys<12>(node, time, matrix.m);
-        return inverted(matrix, inverse);
-    } else
+    else
         return inverted(matrixAt(node, time), inverse);
     return true;
+}
+
+/* The same of a transform for one ray, by columns. */
+OXRT_INLINE bool inverseAt(const OxrtTraversableView& transform, float time, Columns& inverse) {
+    if (transform.type == OXRT_TRAVERSABLE_STATIC) {
+        inverse = columnsOf(transform.transformKeys + 12);
+        return true;
+    }
+    if (transform.type == OXRT_TRAVERSABLE_SRT_MOTION) {
+        const Affine matrix = matrixAt(transform, time);
+        return inverted(quadAt(matrix.m), quadAt(matrix.m + 4), quadAt(matrix.m + 8), inverse);
+    }
+    const KeyPlace place = keyPlace(transform, time);
+    const float* first = transform.transformKeys + uint64_t(place.key) * 12;
+    const float rest = 1.0f - place.fraction;
+    const auto row = [&](int number) {
+        const Quad before = quadAt(first + 4 * number);
+        return place.fraction == 0.0f ? before : rest * before + place.fraction * quadAt(first + 12 + 4 * number);
+    };
+    return inverted(row(0), row(1), row(2), inverse);
 }
 
 /* ---- the way from the root of a trace to a primitive ------------------------------------------------------------------------------- */
