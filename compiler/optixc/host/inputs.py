@@ -43,7 +43,8 @@ class MotionOptions:
         try:
             times = float(self.time_begin), float(self.time_end)
         except (TypeError, ValueError, OverflowError) as error:
-            raise InvalidValueError(f"the times of MotionOptions are numbers, not {self.time_begin!r:.40} and {self.time_end!r:.40}") from error
+            times_given = f"{self.time_begin!r:.40} and {self.time_end!r:.40}"
+            raise InvalidValueError(f"the times of MotionOptions are numbers, not {times_given}") from error
         target.timeBegin, target.timeEnd = times
 
 
