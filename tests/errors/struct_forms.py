@@ -55,6 +55,16 @@ class Kinds:
 
 
 @ox.struct
+class Broken:
+    inner: missing  # E[OX201]: `missing` is no type
+
+
+@ox.payload
+class HoldsBroken:
+    broken: Broken
+
+
+@ox.struct
 class Default:
     x: float = True  # E[OX302]: the default of `x` must be float32
 

@@ -268,10 +268,11 @@ class Expressions:
                     starts = range(0, len(arguments), columns)
                     arguments = [f"{row_type}({', '.join(arguments[i : i + columns])})" for i in starts]
                 return Code(f"{name}{{{{{', '.join(arguments)}}}}}")
-            case Struct():
-                return Code(f"{name}{{{', '.join(self._members(node.type, node, arguments))}}}")
-            case FixedArray():
-                return Code(f"{name}{{{{{', '.join(arguments)}}}}}" if arguments else f"{name}{{}}")
+            case Struct(fields=fields):
+                return Code(f"{name}{{{', '.join(self._initialisers([field.type for field in fields], node, arguments))}}}")
+            case FixedArray(element=element):
+                items = self._initialisers([element] * len(arguments), node, arguments)
+                return Code(f"{name}{{{{{', '.join(items)}}}}}" if items else f"{name}{{}}")
             case CoopVec():
                 return Code(f"oxrt::coopVecOf<{name}>({', '.join(arguments)})")
             case Tuple():
@@ -279,15 +280,15 @@ class Expressions:
             case _:
                 return Code(f"{name}({', '.join(arguments)})")
 
-    def _members(self, struct: Struct, node: Construct, arguments: list[str]) -> list[str]:
-        """Initialisers of a struct's fields; storage types are narrowed as an assignment would."""
-        members = []
-        for field, argument, text in zip(struct.fields, node.arguments, arguments, strict=False):
-            if isinstance(field.type, Scalar) and field.type != argument.type:
-                members.append(f"{self._dialect.type_name(field.type, argument)}({text})")
+    def _initialisers(self, types: list[Type], node: Construct, arguments: list[str]) -> list[str]:
+        """Initialisers of a struct's fields or an array's items; storage types are narrowed as an assignment would."""
+        parts = []
+        for type_, argument, text in zip(types, node.arguments, arguments, strict=False):
+            if isinstance(type_, Scalar) and type_ != argument.type:
+                parts.append(f"{self._dialect.type_name(type_, argument)}({text})")
             else:
-                members.append(self.stored(text, argument, field.type))
-        return members
+                parts.append(self.stored(text, argument, type_))
+        return parts
 
     def stored(self, text: str, value: Expr, target: Type) -> str:
         """The text of a value as it is written to a place of type `target`: vectors of storage scalars are converted."""

@@ -31,7 +31,7 @@ from optixc.ir.nodes import (
     Logical,
     Select,
 )
-from optixc.ir.types import FixedArray, Scalar, ScalarKind, Struct, Tuple, Type, Vector, scalar_of
+from optixc.ir.types import Scalar, ScalarKind, Tuple, Type, Vector, scalar_of
 from optixc.ir.walk import subexpressions
 from optixc.passes.uniformity import COMMON_IN_INTERSECTION, Clone, varies
 
@@ -224,9 +224,6 @@ class LaneExpressions(Expressions):
             case Construct(type=Tuple()) if self.lanes.varies(expression):
                 items = [self.wide(argument) for argument in expression.arguments]
                 return Code(f"oxrt::makeTuple({', '.join(items)})")
-            case Construct(type=FixedArray(element=element)) if self.lanes.varies(expression):
-                items = [self.text(item) if spreads_itself(item, element) else self.wide(item) for item in expression.arguments]
-                return Code(f"{self.lanes.type_name(expression.type, expression)}{{{{{', '.join(items)}}}}}")
             case _:
                 return super().code(expression)
 
@@ -256,15 +253,15 @@ class LaneExpressions(Expressions):
             return f"oxrt::convert<{self.lanes.type_name(scalar, Literal(0, scalar))}>({text})"
         return super().stored(text, value, target)
 
-    def _members(self, struct: Struct, node: Construct, arguments: list[str]) -> list[str]:
-        """Initialisers of a wide struct: whole values that are uniform are spread first."""
+    def _initialisers(self, types: list[Type], node: Construct, arguments: list[str]) -> list[str]:
+        """Initialisers of a wide struct or array: whole values that are uniform are spread first."""
         if not self.lanes.varies(node):
-            return super()._members(struct, node, arguments)
-        members = []
-        for field, argument, text in zip(struct.fields, node.arguments, arguments, strict=False):
-            stays = self.lanes.varies(argument) or spreads_itself(argument, field.type)
-            members.append(self.stored(text if stays else self.wide(argument), argument, field.type))
-        return members
+            return super()._initialisers(types, node, arguments)
+        parts = []
+        for type_, argument, text in zip(types, node.arguments, arguments, strict=False):
+            stays = self.lanes.varies(argument) or spreads_itself(argument, type_)
+            parts.append(self.stored(text if stays else self.wide(argument), argument, type_))
+        return parts
 
 
 def spreads_itself(value: Expr, target: Type) -> bool:

@@ -128,11 +128,9 @@ class _Struct:
         return int(PayloadSemantics(bits))
 
     def _check_words(self) -> None:
-        if self.kind is t.StructKind.PLAIN or any(isinstance(f.type, t.Void) or _holds_array(f.type) for f in self.fields):
+        if self.kind is t.StructKind.PLAIN or any(_has_no_words(field.type) for field in self.fields):
             return
         limit = MAX_PAYLOAD_WORDS if self.kind is t.StructKind.PAYLOAD else MAX_ATTRIBUTE_WORDS
-        if any(isinstance(field.type, t.Tuple) for field in self.fields):
-            return
         words = sum(payload_words(field.type) for field in self.fields)
         if words > limit:
             place = self.scope.file.source.header_span(self.node)
@@ -152,6 +150,16 @@ def _holds_array(type_: t.Type) -> bool:
         case t.FixedArray(element=element):
             return _holds_array(element)
     return False
+
+
+def _has_no_words(type_: t.Type) -> bool:
+    """Whether a field, or one inside of it, has an error already."""
+    match type_:
+        case t.Struct(fields=fields):
+            return any(_has_no_words(field.type) for field in fields)
+        case t.FixedArray(element=element):
+            return _has_no_words(element)
+    return isinstance(type_, t.Void | t.Tuple | t.Array)
 
 
 def _declare_enum(scope: Declarations, node: ast.ClassDef, diagnostics: Diagnostics) -> EnumSymbol:
