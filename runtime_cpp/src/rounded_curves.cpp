@@ -70,7 +70,8 @@ Bezier partOf(const Cubic& c, float begin, float width)
     return bezierOf(part);
 }
 
-// The parameter in [low, high] where the slope goes from negative to positive, by regula falsi with bisection.
+// The parameter in [low, high] where the slope goes from negative to positive, by regula falsi with bisection. Of the last interval it is
+// the end where the ray is inside of the sphere: along a slowly growing tube the minimum lies where it has hardly entered.
 float minimumIn(const AlongRay& along, float low, float high, float slopeLow, float slopeHigh)
 {
     for (int step = 0; step < rootSteps && high - low > 1e-7f; ++step) {
@@ -87,7 +88,7 @@ float minimumIn(const AlongRay& along, float low, float high, float slopeLow, fl
             slopeHigh = slope;
         }
     }
-    return 0.5f * (low + high);
+    return high;
 }
 
 struct Entry {
