@@ -1,8 +1,8 @@
 """Random strands of every round curve against the definition in float64: what is hit, where, and that it lies on the surface.
 
 Rays come from outside and inside, graze, run along the axis, and begin near and far; strands are straight and bent, thick and thin,
-tapered, small and large, with flat ends and open ones. A hit of the strand with a smaller radius and shorter ends must be found; one that a larger
-strand has not must not be.
+tapered, small and large, with flat ends and open ones. A hit of the strand with a smaller radius and shorter ends must be found; one
+that a larger strand has not must not be.
 """
 
 from __future__ import annotations
