@@ -1,4 +1,5 @@
-"""Peak memory of ambient occlusion of the dragon: ours in Python, the hand-written program, and Python with the same imports alone."""
+"""Peak memory of ambient occlusion of the dragon: ours in Python, the hand-written program, and Python with the same imports alone; and
+what launches of the path tracer need for each thread beyond the scene."""
 
 from __future__ import annotations
 
@@ -21,6 +22,9 @@ ALLOWED = 1.3
 _PEAK = "print(next(line.split()[1] for line in open('/proc/self/status') if line.startswith('VmHWM:')))"
 _IMPORTS = "import sys; sys.path.insert(0, sys.argv[1])\nimport benchmarks.memory\n"
 _RENDER = "benchmarks.memory.render_ours(int(sys.argv[2]))\n"
+_LAUNCH = "print(benchmarks.memory.growth_by_launches(int(sys.argv[2])))\n"
+_PATH_LAUNCHES = 3
+_MANY_THREADS = 32
 
 
 @dataclass
@@ -31,6 +35,8 @@ class PeakMemory:
     ours: float
     hand_written: float
     interpreter: float
+    per_thread: float
+    """MiB that each of many threads adds when it has rendered the path tracer."""
 
     @property
     def allowed(self) -> float:
@@ -38,9 +44,25 @@ class PeakMemory:
         return ALLOWED * self.hand_written + self.interpreter
 
 
-def _workload() -> Workload:
-    """Ambient occlusion of the whole image."""
-    return replace(next(one for one in WORKLOADS if one.name == "ambient_occlusion"), share=1)
+def _workload(name: str = "ambient_occlusion") -> Workload:
+    """The whole image."""
+    return replace(next(one for one in WORKLOADS if one.name == name), share=1)
+
+
+def _resident() -> float:
+    """MiB of this process in memory now."""
+    line = next(line for line in Path("/proc/self/status").read_text().splitlines() if line.startswith("VmRSS:"))
+    return int(line.split()[1]) / 1024
+
+
+def growth_by_launches(threads: int) -> float:
+    """MiB that the process grows by when the scene, the image and the threads are there and it launches."""
+    rendering = ours(ox.DeviceContext(threads=threads), mesh_scene("dragon"), _workload("path"), lanes="auto")
+    rendering.image.fill(0.0)
+    before = _resident()
+    for _ in range(_PATH_LAUNCHES):
+        rendering.run()
+    return _resident() - before
 
 
 def render_ours(threads: int) -> None:
@@ -50,9 +72,9 @@ def render_ours(threads: int) -> None:
 
 
 def _python(code: str, threads: int) -> float:
-    command = [sys.executable, "-c", _IMPORTS + code + _PEAK, str(ROOT), str(threads)]
+    command = [sys.executable, "-c", _IMPORTS + code, str(ROOT), str(threads)]
     answer = subprocess.run(command, capture_output=True, text=True, check=True)
-    return int(answer.stdout.split()[-1]) / 1024
+    return float(answer.stdout.split()[-1])
 
 
 def _program() -> Path:
@@ -81,5 +103,6 @@ def _hand_written(threads: int) -> float:
 
 
 def measure(threads: int) -> PeakMemory:
-    """Three processes, one after the other; raises SceneMissing without the dragon."""
-    return PeakMemory(threads, _python(_RENDER, threads), _hand_written(threads), _python("", threads))
+    """Four processes, one after the other; raises SceneMissing without the dragon."""
+    per_thread = _python(_LAUNCH, _MANY_THREADS) / _MANY_THREADS
+    return PeakMemory(threads, _python(_RENDER + _PEAK, threads) / 1024, _hand_written(threads), _python(_PEAK, threads) / 1024, per_thread)

@@ -117,10 +117,14 @@ def _others(results: Results) -> list[str]:
         parts.append("## Empty launch\n\n" + table(["size", "threads", "lanes", "from C, us", "from Python, us"], lines))
     if results.memory:
         lines = [
-            [str(one.threads), *(f"{value:.0f}" for value in (one.ours, one.hand_written, one.interpreter, one.allowed))]
+            [
+                str(one.threads),
+                *(f"{value:.0f}" for value in (one.ours, one.hand_written, one.interpreter, one.allowed)),
+                f"{one.per_thread:.2f}",
+            ]
             for one in results.memory
         ]
-        header = ["threads", "ours, MiB", "hand-written, MiB", "bare interpreter, MiB", "allowed, MiB"]
+        header = ["threads", "ours, MiB", "hand-written, MiB", "bare interpreter, MiB", "allowed, MiB", "a thread of the path tracer, MiB"]
         parts.append("## Peak memory, ambient occlusion of the dragon\n\n" + table(header, lines))
     return parts
 
