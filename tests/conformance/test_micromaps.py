@@ -166,6 +166,7 @@ def test_T232_what_does_not_fit_is_named(harness: Harness) -> None:
         ((np.zeros(4, np.uint8), [(0, 0, 3)]), "format 3"),
         (([ox.OpacityMicromap(np.zeros(3, np.uint8), 1)],), "4 whole numbers"),
         (([ox.OpacityMicromap(np.array([0, 1, 2, 1]), 1, TWO)],), "2-state"),
+        (([ox.OpacityMicromap(np.array([0, -1, 0, 0]), 1)],), "not -1"),
     ):
         with pytest.raises(ox.InvalidValueError, match=text):
             make(*arguments)
@@ -173,6 +174,7 @@ def test_T232_what_does_not_fit_is_named(harness: Harness) -> None:
     for indices, more, text in (
         (np.array([1], np.int32), {}, "the array holds 1"),
         (np.array([-5], np.int32), {}, "-1 to -4"),
+        (np.array([1 << 32], np.int64), {}, "triangle 0 is 4294967296"),
         (np.array([0, 0], np.int32), {}, "shape"),
         (np.array([0], np.int32), {"usage_counts": [(2, 1, 2)]}, "usage"),
     ):
@@ -198,15 +200,19 @@ def test_maps_are_ignored_where_the_pipeline_does_not_ask(harness: Harness) -> N
     assert outcomes(results) == "aaaa"
 
 
-def test_T235_a_baked_map_never_contradicts_the_picture() -> None:
+@pytest.mark.parametrize("far", [0.0, 300.0])
+@pytest.mark.parametrize("wrap", ["repeat", "clamp"])
+@pytest.mark.parametrize("filter", ["linear", "nearest"])
+def test_T235_a_baked_map_never_contradicts_the_picture(filter: str, wrap: str, far: float) -> None:
     random = np.random.default_rng(235)
     alpha = np.kron(random.random((9, 13)) > 0.5, np.ones((4, 4))).astype(np.float32)
-    uvs = random.uniform(-0.7, 1.2, (30, 2))
-    baked = ox.bake_opacity_micromap(alpha, uvs, level=4)
+    # far outside, float32 coordinates are rounded by a good part of a texel
+    uvs = (random.uniform(-0.7, 1.2, (30, 2)) + (far if wrap == "repeat" else 0.0)).astype(np.float32)
+    baked = ox.bake_opacity_micromap(alpha, uvs, level=4, filter=filter, wrap=wrap)
     assert 0.0 < baked.known < 1.0
     for number, corners in enumerate(uvs.reshape(-1, 3, 2)):
-        points = random.dirichlet((1, 1, 1), 2000)
-        read = _bilinear(alpha, points @ corners)
+        points = random.dirichlet((1, 1, 1), 2000).astype(np.float32)
+        read = _read(alpha, points @ corners, filter, wrap)
         index = int(baked.indices[number])
         states = (
             np.full(2000, -1 - index) if index < 0 else baked.maps[index].states[ox.barycentrics_to_micromap_index(*points[:, 1:].T, 4)]
@@ -215,14 +221,47 @@ def test_T235_a_baked_map_never_contradicts_the_picture() -> None:
         assert (read[states == 0] < 0.5).all()
 
 
-def _bilinear(alpha: np.ndarray, uvs: np.ndarray) -> np.ndarray:
-    """The picture read with wrap "repeat"."""
+def _read(alpha: np.ndarray, uvs: np.ndarray, filter: str, wrap: str) -> np.ndarray:
+    """The picture as a texture of this filter and wrap mode reads it."""
     height, width = alpha.shape
-    x, y = uvs[:, 0] * width - 0.5, uvs[:, 1] * height - 0.5
-    left, top = np.floor(x).astype(int), np.floor(y).astype(int)
-    s, t = x - left, y - top
-    read = [[alpha[(top + j) % height, (left + i) % width] for i in (0, 1)] for j in (0, 1)]
+
+    def texel(x: np.ndarray, y: np.ndarray) -> np.ndarray:
+        inside = (y % height, x % width) if wrap == "repeat" else (np.clip(y, 0, height - 1), np.clip(x, 0, width - 1))
+        return np.asarray(alpha[inside])
+
+    x, y = uvs[:, 0].astype(np.float64) * width, uvs[:, 1].astype(np.float64) * height
+    if filter == "nearest":
+        return texel(np.floor(x).astype(int), np.floor(y).astype(int))
+    left, top = np.floor(x - 0.5).astype(int), np.floor(y - 0.5).astype(int)
+    s, t = x - 0.5 - left, y - 0.5 - top
+    read = [[texel(left + i, top + j) for i in (0, 1)] for j in (0, 1)]
     return np.asarray((1 - t) * ((1 - s) * read[0][0] + s * read[0][1]) + t * ((1 - s) * read[1][0] + s * read[1][1]))
+
+
+UVS = np.array([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]])
+CHECKERS = (np.arange(64).reshape(8, 8) % 3 * 100).astype(np.uint8)
+
+
+@pytest.mark.parametrize(("uvs", "expected"), [
+    (0.0 * UVS + 0.3, None), (UVS[[0, 1, 1]], None), (3.0 * UVS - 1.0, None), (1e6 * UVS, None), (UVS[:0], None),
+    (np.where(UVS == 1.0, np.nan, UVS), r"uvs\[1\] is \[nan"), (np.where(UVS == 1.0, np.inf, UVS), r"uvs\[1\] is \[inf"),
+    (1e9 * UVS, "at most 16777216"), ("x", "shape"), (UVS.astype(complex), "complex"), ([[0.0, 1.0], [0.0]], "array of numbers")])
+def test_texture_coordinates_of_every_kind(uvs: Any, expected: str | None) -> None:
+    for wrap in ("repeat", "clamp"):
+        if expected is None:
+            assert len(ox.bake_opacity_micromap(CHECKERS, uvs, level=2, wrap=wrap).indices) == len(uvs) // 3
+        else:
+            with pytest.raises(ox.InvalidValueError, match=expected):
+                ox.bake_opacity_micromap(CHECKERS, uvs, level=2, wrap=wrap)
+
+
+@pytest.mark.parametrize(("given", "expected"), [
+    ({"level": True}, "level"), ({"level": 13}, "level"), ({"cutoff": float("nan")}, "cutoff"), ({"cutoff": "x"}, "cutoff"),
+    ({"indices": [[0, 1, -1]]}, "below 3"), ({"indices": np.zeros((1, 3))}, "rows of three"), ({"indices": [[0, 1, 2], [0]]}, "array"),
+    ({"alpha": CHECKERS > 3}, "bool"), ({"alpha": np.zeros((0, 4), np.uint8)}, "one channel"), ({"wrap": "mirror"}, "mirror")])
+def test_what_cannot_be_baked_is_named(given: dict[str, Any], expected: str) -> None:
+    with pytest.raises(ox.InvalidValueError, match=expected):
+        ox.bake_opacity_micromap(**({"alpha": CHECKERS, "uvs": UVS} | given))
 
 
 @pytest.mark.parametrize("filter", ["linear", "nearest"])

@@ -40,13 +40,14 @@ class OpacityMicromap:
         """The states as OptiX lays them out: 1 or 2 bits each, the first in the lowest bits."""
         bits = take_member(self.format, _FORMATS, "OpacityMicromap.format")
         take_whole(self.level, 0, MAX_LEVEL, "OpacityMicromap.level")
-        states = _take_numbers(self.states, "OpacityMicromap.states")
+        states = take_numbers(self.states, "OpacityMicromap.states")
         if states.shape != (4**self.level,) or states.dtype.kind not in "iu":
             raise InvalidValueError(
                 f"OpacityMicromap.states takes {4**self.level} whole numbers for level {self.level}, not {states.shape}"
             )
         if states.size and not 0 <= int(states.min()) <= int(states.max()) < 1 << bits:
-            raise InvalidValueError(f"states of a {1 << bits}-state micromap are 0 to {(1 << bits) - 1}, not {int(states.max())}")
+            wrong = int(states.min()) if int(states.min()) < 0 else int(states.max())
+            raise InvalidValueError(f"states of a {1 << bits}-state micromap are 0 to {(1 << bits) - 1}, not {wrong}")
         per_byte = 8 // bits
         padded = np.zeros(-(-states.size // per_byte) * per_byte, np.uint8)
         padded[: states.size] = states
@@ -126,11 +127,11 @@ def _pack(maps: Sequence[Any]) -> tuple[Words, Words]:
     return (np.concatenate(parts) if parts else np.zeros(0, np.uint8)), np.array(rows, DESC_DTYPE)
 
 
-def _take_numbers(values: Any, where: str) -> Words:
+def take_numbers(values: Any, where: str) -> Words:
     try:
         return np.asarray(values)
     except ValueError as error:
-        raise InvalidValueError(f"{where} takes an array of whole numbers, not {values!r:.60}") from error
+        raise InvalidValueError(f"{where} takes an array of numbers, not {values!r:.60}") from error
 
 
 def _table(rows: Any, dtype: np.dtype[Any], name: str) -> Words:
@@ -176,10 +177,13 @@ def pack_micromaps(given: Any, triangles: int, kept: list[Any]) -> Any:
     mode = OpacityMicromapArrayIndexingMode.LINEAR
     if given.indices is not None:
         mode = OpacityMicromapArrayIndexingMode.INDEXED
-        indices = _take_numbers(given.indices, "BuildInputOpacityMicromap.indices")
+        indices = take_numbers(given.indices, "BuildInputOpacityMicromap.indices")
         signed = {np.dtype(np.int16), np.dtype(np.int32), np.dtype(np.int64)}
         if indices.dtype not in signed or indices.shape != (triangles,):
             raise InvalidValueError(f"micromap indices take int16 or int32 of shape ({triangles},), not {indices.dtype} {indices.shape}")
+        far = np.flatnonzero(np.abs(indices.astype(np.float64)) >= WORD_LIMIT // 2)
+        if len(far):
+            raise InvalidValueError(f"the micromap index of triangle {far[0]} is {indices[far[0]]}; indices are int32")
         words = np.ascontiguousarray(indices, np.int32)
         made.indices = ffi.cast("int32_t*", words.ctypes.data)
         kept.append(words)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import Any
 
@@ -19,12 +20,19 @@ from optixc.host.opacity import (
     UNKNOWN_TRANSPARENT,
     BuildInputOpacityMicromap,
     OpacityMicromap,
+    take_numbers,
 )
+from optixc.host.whole_numbers import take_whole
 
 # Texels: interpolated coordinates are rounded, and so is the sum of the weights of a filter.
 _COORDINATE_ROUNDING = 1.0 / 256.0
+# Of a coordinate: what interpolation in float32 may be off by, which counts far outside of the picture.
+_RELATIVE_ROUNDING = 2.0**-21
+# From here on float32 coordinates have no fraction.
+_FARTHEST = 2.0**24
 _ALPHA_ROUNDING = 1e-6
 _AT_ONCE = 1 << 20
+_PICTURES = 4
 _FINEST = 3  # levels by which a micro-triangle is split to bound what a filter gives on it
 Floats = NDArray[np.float64]
 Counts = NDArray[np.int64]
@@ -62,11 +70,14 @@ def bake_opacity_micromap(
     """
     picture = _picture(alpha)
     corners = _corners(uvs, indices)
-    if not isinstance(level, int) or not 0 <= level <= MAX_LEVEL:
-        raise InvalidValueError(f"level must be 0 to {MAX_LEVEL}, not {level!r}")
+    take_whole(level, 0, MAX_LEVEL, "level")
     if filter not in ("linear", "nearest") or wrap not in ("repeat", "clamp"):
         raise InvalidValueError(f'filter is "linear" or "nearest" and wrap "repeat" or "clamp", not {filter!r} and {wrap!r}')
-    sampler = _Sampler(picture, cutoff, filter == "linear", wrap == "repeat")
+    if not isinstance(cutoff, int | float) or math.isnan(cutoff):
+        raise InvalidValueError(f"cutoff takes a number, not {cutoff!r}")
+    farthest = float(np.abs(corners).max(initial=0.0)) * max(picture.shape)
+    rounding = max(_COORDINATE_ROUNDING, _RELATIVE_ROUNDING * farthest)
+    sampler = _Sampler(picture, cutoff, filter == "linear", wrap == "repeat", rounding)
     parts = np.stack(micromap_index_to_base_barycentrics(np.arange(4**level), level)).astype(np.float64)
     # Foliage repeats its texture coordinates: equal triangles are looked at once
     unlike, of_triangle, uses = np.unique(corners.reshape(-1, 6), axis=0, return_inverse=True, return_counts=True)
@@ -87,20 +98,27 @@ def bake_opacity_micromap(
 
 
 def _picture(alpha: Any) -> Floats:
-    array = np.asarray(alpha)
+    array = take_numbers(alpha, "alpha")
     if array.ndim != 2 or 0 in array.shape or array.dtype.kind not in "uf":
-        raise InvalidValueError(f"alpha takes a picture of one channel, uint8 or float of shape (height, width), not {array.shape}")
+        what = f"{array.dtype} {array.shape}"
+        raise InvalidValueError(f"alpha takes a picture of one channel, uint8 or float of shape (height, width), not {what}")
     return array.astype(np.float64) / (255.0 if array.dtype == np.uint8 else 1.0)
 
 
 def _corners(uvs: Any, indices: Any) -> Floats:
-    points = np.asarray(uvs, np.float64)
-    if points.ndim != 2 or points.shape[1] != 2:
-        raise InvalidValueError(f"uvs takes an array of shape (n, 2), not {points.shape}")
+    given = take_numbers(uvs, "uvs")
+    if given.ndim != 2 or given.shape[1] != 2 or given.dtype.kind not in "iuf":
+        raise InvalidValueError(f"uvs takes numbers of shape (n, 2), not {given.dtype} {given.shape}")
+    points = given.astype(np.float64)
+    wrong = np.flatnonzero(~(np.abs(points) <= _FARTHEST).all(axis=1))
+    if len(wrong):
+        what = f"uvs[{wrong[0]}] is {points[wrong[0]].tolist()}"
+        raise InvalidValueError(f"{what}; coordinates are finite and at most {_FARTHEST:.0f} in size")
     if indices is None:
         return points[: len(points) // 3 * 3].reshape(-1, 3, 2)
-    triangles = np.asarray(indices)
-    if triangles.ndim != 2 or triangles.shape[1] != 3 or (triangles.size and not 0 <= triangles.min() <= triangles.max() < len(points)):
+    triangles = take_numbers(indices, "indices")
+    is_table = triangles.dtype.kind in "iu" and triangles.ndim == 2 and triangles.shape[1] == 3
+    if not is_table or (triangles.size and not 0 <= triangles.min() <= triangles.max() < len(points)):
         raise InvalidValueError(f"indices takes rows of three vertices below {len(points)}")
     return np.asarray(points[triangles], np.float64)
 
@@ -108,7 +126,8 @@ def _corners(uvs: Any, indices: Any) -> Floats:
 class _Sampler:
     """Counts of texels above and below the cut-off in rectangles of the picture, by summed areas."""
 
-    def __init__(self, picture: Floats, cutoff: float, is_linear: bool, repeats: bool) -> None:
+    def __init__(self, picture: Floats, cutoff: float, is_linear: bool, repeats: bool, rounding: float) -> None:
+        self._rounding = rounding
         self._height, self._width = picture.shape
         self._is_linear, self._repeats = is_linear, repeats
         self._picture, self._cutoff = picture, cutoff
@@ -120,8 +139,8 @@ class _Sampler:
         """The state of every micro-triangle (their corners in `parts`) of every triangle."""
         size = np.array([self._width, self._height], np.float64)
         texels = _split(corners * size, parts)
-        low = np.minimum(np.minimum(texels[0], texels[1]), texels[2]) - _COORDINATE_ROUNDING
-        high = np.maximum(np.maximum(texels[0], texels[1]), texels[2]) + _COORDINATE_ROUNDING
+        low = np.minimum(np.minimum(texels[0], texels[1]), texels[2]) - self._rounding
+        high = np.maximum(np.maximum(texels[0], texels[1]), texels[2]) + self._rounding
         shift = 0.5 if self._is_linear else 0.0
         first = np.floor(low - shift).astype(np.int64)
         last = np.floor(high - shift).astype(np.int64) + (1 if self._is_linear else 0)
@@ -131,7 +150,8 @@ class _Sampler:
         states = np.where(self._middle_is_opaque(texels), UNKNOWN_OPAQUE, UNKNOWN_TRANSPARENT).astype(np.uint8)
         states[_count(self._opaque, x0, x1, y0, y1) == area] = OPAQUE
         states[_count(self._transparent, x0, x1, y0, y1) == area] = TRANSPARENT
-        unknown = np.nonzero(states > OPAQUE)
+        # What is many pictures high would take for ever, and is hardly of one state
+        unknown = np.nonzero((states > OPAQUE) & (high[..., 1] - low[..., 1] <= _PICTURES * self._height))
         states[unknown] = self._state_by_rows(np.stack([one[unknown] for one in texels], axis=1), states[unknown])
         if self._is_linear:
             unknown = np.nonzero(states > OPAQUE)
@@ -142,14 +162,14 @@ class _Sampler:
         """States of micro-triangles (n, 3, 2) that their rectangles do not tell: row by row, only the texels beside the triangle count."""
         shift = 0.5 if self._is_linear else 0.0
         more = 1 if self._is_linear else 0
-        first = np.floor(points[:, :, 1].min(axis=1) - _COORDINATE_ROUNDING - shift).astype(np.int64)
-        last = np.floor(points[:, :, 1].max(axis=1) + _COORDINATE_ROUNDING - shift).astype(np.int64)
+        first = np.floor(points[:, :, 1].min(axis=1) - self._rounding - shift).astype(np.int64)
+        last = np.floor(points[:, :, 1].max(axis=1) + self._rounding - shift).astype(np.int64)
         is_opaque, is_transparent = np.ones(len(points), bool), np.ones(len(points), bool)
         for step in range(int((last - first).max(initial=-1)) + 1):
             row = np.minimum(first + step, last)
-            left, right = _extent(points, row + shift - _COORDINATE_ROUNDING, row + 1 + shift + _COORDINATE_ROUNDING)
-            begin = np.floor(left - _COORDINATE_ROUNDING - shift).astype(np.int64)
-            end = np.floor(right + _COORDINATE_ROUNDING - shift).astype(np.int64)
+            left, right = _extent(points, row + shift - self._rounding, row + 1 + shift + self._rounding)
+            begin = np.floor(left - self._rounding - shift).astype(np.int64)
+            end = np.floor(right + self._rounding - shift).astype(np.int64)
             x0, x1 = self._range(begin, end + more, self._width)
             y0, y1 = self._range(row, row + more, self._height)
             area = (x1 - x0) * (y1 - y0)
@@ -176,8 +196,8 @@ class _Sampler:
     def _filtered_bounds(self, corners: list[Floats]) -> tuple[Floats, Floats]:
         """The least and the greatest filtered alpha on rows of small triangles, corner by corner (n, m, 2). Between four texel centres it
         is bilinear, so on a rectangle its extremes lie at the corners."""
-        low = np.minimum(np.minimum(corners[0], corners[1]), corners[2]) - _COORDINATE_ROUNDING - 0.5
-        high = np.maximum(np.maximum(corners[0], corners[1]), corners[2]) + _COORDINATE_ROUNDING - 0.5
+        low = np.minimum(np.minimum(corners[0], corners[1]), corners[2]) - self._rounding - 0.5
+        high = np.maximum(np.maximum(corners[0], corners[1]), corners[2]) + self._rounding - 0.5
         first, last = np.floor(low).astype(np.int64), np.floor(high).astype(np.int64)
         least, most = np.full(low.shape[:2], np.inf), np.full(low.shape[:2], -np.inf)
         for offset in ((0, 0), (1, 0), (0, 1), (1, 1)):
