@@ -8,6 +8,19 @@ class Pair:
     b: int
 
 
+@ox.device
+def stored(
+    a: uint8,  # E[OX201]: a parameter cannot be uint8
+    b: float,
+) -> float:
+    return b
+
+
+@ox.device
+def gives_stored(b: float) -> tuple[float, ox.half2]:  # E[OX201]: a result cannot be tuple[float32, half2]
+    return b, ox.half2(b)
+
+
 @ox.program
 def __raygen__a():
     i = ox.get_launch_index()
@@ -51,4 +64,5 @@ def __raygen__a():
     ii = ox.FixedArray[float, 3](1.0)  # E[OX305]: takes 3 items or none
     jj = ox.isnan(float3(1.0))  # E[OX302]: isnan() takes a number
     kk = int32(1.0, 2.0)  # E[OX305]: takes one argument
+    mm = stored(3, 1.0)
     ll = ox.float3x3(float3(1.0), float3(1.0), float3(1.0)) * float3(1.0)  # E[OX303]: write `@` for the matrix product

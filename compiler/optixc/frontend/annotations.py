@@ -13,6 +13,7 @@ from optixc.frontend.fold import FoldError, constant_of
 from optixc.frontend.resolve_name import resolve_dotted
 from optixc.frontend.source_file import Diagnostics
 from optixc.frontend.symbols import BuiltinName, ConstantSymbol, EnumSymbol, PythonName, SkippedName, StructSymbol, Symbol
+from optixc.frontend.weak import widened
 from optixc.ir import types as t
 
 MAX_FIXED_ELEMENTS = 65536
@@ -57,6 +58,16 @@ def resolve_type(scope: Declarations, node: ast.expr, diagnostics: Diagnostics) 
             return None
     _report_no_type(scope, node, None, diagnostics)
     return None
+
+
+def resolve_value_type(scope: Declarations, node: ast.expr, diagnostics: Diagnostics, what: str) -> t.Type | None:
+    """The type of what is no place in memory: a local, parameter or result; None after a diagnostic."""
+    type_ = resolve_type(scope, node, diagnostics)
+    if type_ is not None and widened(type_) != type_:
+        message = f"{what} cannot be {type_}: 8 and 16 bit numbers live in memory only"
+        diagnostics.add(scope.file.source, "OX201", node, message, f"write {widened(type_)}")
+        return None
+    return type_
 
 
 def type_of_symbol(scope: Declarations, symbol: Symbol | None, diagnostics: Diagnostics) -> t.Type | None:

@@ -10,7 +10,7 @@ import ast
 from collections.abc import Sequence
 
 from optixc.diagnostics import ChainLink
-from optixc.frontend.annotations import resolve_type
+from optixc.frontend.annotations import resolve_value_type
 from optixc.frontend.check_expr import check_expression
 from optixc.frontend.check_payload_flow import check_payload_flow
 from optixc.frontend.check_program import check_parameter_names, check_requirements, program_parameters
@@ -154,7 +154,7 @@ class Checker:
         for argument, given in zip((*arguments.posonlyargs, *arguments.args, *arguments.kwonlyargs), types, strict=True):
             type_ = given
             if argument.annotation is not None:
-                type_ = resolve_type(symbol.scope, argument.annotation, self.diagnostics)
+                type_ = resolve_value_type(symbol.scope, argument.annotation, self.diagnostics, "a parameter")
                 if isinstance(type_, t.Void):
                     c.error("OX201", argument.annotation, "a parameter cannot be None", "")
                     type_ = None
@@ -166,8 +166,7 @@ class Checker:
     def _declared_result(self, c: Context, symbol: FunctionSymbol) -> t.Type | None:
         if symbol.node.returns is None:
             return None
-        type_ = resolve_type(symbol.scope, symbol.node.returns, self.diagnostics)
-        return t.VOID if type_ is None else type_
+        return resolve_value_type(symbol.scope, symbol.node.returns, self.diagnostics, "a result")
 
     def _check_body(self, c: Context, symbol: FunctionSymbol, declared: t.Type | None) -> None:
         span = symbol.span
@@ -207,7 +206,7 @@ class Checker:
         info = body.info[symbol.node]
         if symbol.annotation is None or info.type == INVALID:
             return
-        type_ = resolve_type(symbol.scope, symbol.annotation, self.diagnostics)
+        type_ = resolve_value_type(symbol.scope, symbol.annotation, self.diagnostics, "a constant")
         context = Context(symbol.scope, body, self.diagnostics, self._hooks)
         if type_ is not None and not can_convert(info.type, type_):
             message = f"the constant must be {type_}, this is {describe(info.type)}"

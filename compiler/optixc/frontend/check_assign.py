@@ -5,7 +5,7 @@ from __future__ import annotations
 import ast
 import copy
 
-from optixc.frontend.annotations import resolve_type
+from optixc.frontend.annotations import resolve_value_type
 from optixc.frontend.checked import ElementUse, ExprInfo, FieldUse, IndexUse, SwizzleUse
 from optixc.frontend.context import Context, describe, remedy
 from optixc.frontend.conversions import can_convert
@@ -13,7 +13,7 @@ from optixc.frontend.environment import Bound
 from optixc.frontend.places import check_no_alias, note_write, parameter_role, place_of, why_read_only
 from optixc.frontend.resolve_static import static_symbol
 from optixc.frontend.symbols import ParamsSymbol
-from optixc.frontend.weak import CheckType, Invalid, WeakFloat, WeakInt, default_type, is_weak, widened
+from optixc.frontend.weak import CheckType, Invalid, WeakFloat, WeakInt, default_type, is_weak
 from optixc.ir import types as t
 from optixc.ir.nodes import Local, is_reference_type
 
@@ -31,11 +31,12 @@ def check_assign(c: Context, node: ast.Assign) -> None:
 
 def check_annotated(c: Context, node: ast.AnnAssign) -> None:
     """`a: float = value`, or `a: float` alone, which only promises a type."""
-    type_ = resolve_type(c.scope, node.annotation, c.diagnostics)
+    type_ = resolve_value_type(c.scope, node.annotation, c.diagnostics, "a local")
     if not isinstance(node.target, ast.Name):
         c.error("OX401", node.target, "only a local can be annotated here", "leave the annotation out")
         return
-    if type_ is not None and not _can_be_local(c, node.annotation, type_):
+    if isinstance(type_, t.Void):
+        c.error("OX201", node.annotation, "a local cannot be None", "")
         type_ = None
     if type_ is not None:
         c.declared[node.target.id] = type_
@@ -51,16 +52,6 @@ def check_annotated(c: Context, node: ast.AnnAssign) -> None:
         return
     check_no_alias(c, node.value, f"`{node.target.id}`")
     bind_local(c, node.target, type_)
-
-
-def _can_be_local(c: Context, node: ast.expr, type_: t.Type) -> bool:
-    if widened(type_) != type_:
-        c.error("OX201", node, f"a local cannot be {type_}: 8 and 16 bit numbers live in memory only", f"write {widened(type_)}")
-        return False
-    if isinstance(type_, t.Void):
-        c.error("OX201", node, "a local cannot be None", "")
-        return False
-    return True
 
 
 def check_no_value_lost(c: Context, node: ast.expr, info: ExprInfo) -> None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from optixc.diagnostics import ChainLink
-from optixc.frontend.annotations import resolve_type
+from optixc.frontend.annotations import resolve_value_type
 from optixc.frontend.checked import FunctionInstance, InstanceParameter, PayloadAccess, Requirement
 from optixc.frontend.context import Context
 from optixc.frontend.source_file import Diagnostics
@@ -39,7 +39,7 @@ def program_parameters(c: Context, symbol: FunctionSymbol) -> list[InstanceParam
             c.error("OX315", argument, message, "an `@ox.payload`, `@ox.attributes` or `@ox.struct` class")
             c.poisoned.add(argument.arg)
             continue
-        type_ = resolve_type(symbol.scope, argument.annotation, c.diagnostics)
+        type_ = resolve_value_type(symbol.scope, argument.annotation, c.diagnostics, "a parameter")
         if type_ is None:
             c.poisoned.add(argument.arg)
             continue

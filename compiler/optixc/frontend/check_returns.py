@@ -9,7 +9,7 @@ from optixc.frontend.context import Context, describe
 from optixc.frontend.conversions import common_type
 from optixc.frontend.places import check_no_alias, parameter_role
 from optixc.frontend.symbols import FunctionSymbol
-from optixc.frontend.weak import CheckType, Invalid, default_type, widened
+from optixc.frontend.weak import CheckType, Invalid, default_type
 from optixc.ir import types as t
 from optixc.ir.nodes import Local
 
@@ -21,10 +21,6 @@ def check_returns(c: Context, symbol: FunctionSymbol, declared: t.Type | None, f
     if c.instance.kind is not None and declared not in (None, t.VOID) and "callable" not in c.instance.kind.value:
         assert symbol.node.returns is not None
         c.error("OX316", symbol.node.returns, f"a {c.instance.kind.value} program returns no value", "write `-> None`")
-        return
-    if declared is not None and widened(declared) != declared:
-        assert symbol.node.returns is not None
-        c.error("OX201", symbol.node.returns, f"a result cannot be {declared}", f"write {widened(declared)}")
         return
     result = declared if declared is not None else _joined(c, values)
     if result is None:

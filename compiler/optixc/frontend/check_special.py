@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import ast
 
-from optixc.frontend.annotations import resolve_type
+from optixc.frontend.annotations import resolve_type, resolve_value_type
 from optixc.frontend.arguments import bind_arguments, refuse_stars
 from optixc.frontend.check_intrinsic import require_row
 from optixc.frontend.checked import CallableUse, CopyUse, ExprInfo, PayloadAccess, ReportUse, SbtDataUse
@@ -133,7 +133,7 @@ def _check_callable(c: Context, node: ast.Call, name: str) -> ExprInfo:
     for keyword in node.keywords:
         if keyword.arg != "result":
             return c.error("OX305", keyword.value, f"{name}() has no parameter `{keyword.arg}`", "it takes index, arguments, result=type")
-        result = resolve_type(c.scope, keyword.value, c.diagnostics)
+        result = resolve_value_type(c.scope, keyword.value, c.diagnostics, "a result")
     if not node.args:
         return c.error("OX305", node, f"{name}() misses the index of the callables record", "")
     infos = [c.check(argument) for argument in node.args]

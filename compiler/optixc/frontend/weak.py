@@ -99,6 +99,8 @@ def widened(type_: t.Type) -> t.Type:
     if isinstance(type_, t.Vector):
         element = widened(type_.element)
         return t.Vector(element, type_.size) if isinstance(element, t.Scalar) else type_
+    if isinstance(type_, t.Tuple):
+        return t.Tuple(tuple(widened(item) for item in type_.items))
     return type_
 
 
