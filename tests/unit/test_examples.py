@@ -354,6 +354,19 @@ def test_photons_are_counted_and_their_power_is_conserved(tmp_path: Path) -> Non
     assert image.min() >= 0.0
 
 
+def test_a_network_learns_a_material(tmp_path: Path) -> None:
+    arguments = ("--steps", 200, "--batch", 1024, "--samples", 4, "--width", 96, "--height", 54, "--output", tmp_path / "a.exr")
+    output = run("15_neural_material", *arguments)
+    first, last = map(float, re.search(r"error +(\S+) at first, (\S+) at last", output).groups())
+    # Colours are compressed to [0, 1): their variance is at most 1/4, which is what a network that gives their mean would leave.
+    assert last < first / 20.0 and last < 0.25 / 4.0
+    image = ox.read_image(tmp_path / "a.exr")[:, :, :3]
+    assert np.isfinite(image).all() and image.min() >= 0.0
+    floor = image[50, 48]
+    for start in (6, 54):
+        assert (np.abs(image[14:38, start : start + 36] - floor).max(axis=2) > 0.05).mean() > 0.3, "a torus is no floor"
+
+
 def test_photon_grid_holds_every_photon_in_its_cell(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.syspath_prepend(str(EXAMPLES / "14_photon_mapping"))
     for name in ("shader", "photon_map"):

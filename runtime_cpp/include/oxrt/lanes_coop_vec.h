@@ -144,14 +144,16 @@ void coopVecOuterProductAccumulate(Spans spans, const CoopVec<T, N, X>& a, const
             for (int i = 0; i < W; ++i)
                 turned[i][n] = column[i];
         }
-        addToTiles<N, K>(reinterpret_cast<char*>(one.data) + start, [&](int row, int k, float (&sums)[TILE_ROWS]) {
+        addToTiles<N, K>(reinterpret_cast<char*>(one.data) + start, [&](int row, int k) __attribute__((always_inline)) {
             float factors[W];
             storeLanes(factors, select(lanes, wideB.items[k], 0.0f));
-            for (int r = 0; r < TILE_ROWS; ++r)
-                sums[r] = turned[0][row + r] * factors[0];
-            for (int i = 1; i < W; ++i)
-                for (int r = 0; r < TILE_ROWS; ++r)
-                    sums[r] += turned[i][row + r] * factors[i];
+            TileColumn sums = {};
+            for (int i = 0; i < W; ++i) {
+                TileColumn column;
+                __builtin_memcpy(&column, &turned[i][row], sizeof(column));
+                sums += column * factors[i];
+            }
+            return sums;
         });
     }, matrix, offset);
 }
