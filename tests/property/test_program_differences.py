@@ -83,6 +83,10 @@ PROGRAMS = {
     params.out_int32[i, 0] = rows.items[0].a + 10 * rows.items[1].c + 100 * nested.first.c
     params.out_float32[i, 0] = nested.list[0] + nested.list[3] + rows.m[1].y + rows.rows[1].x + rows.items[1].e
 """,
+    "a_uniform_result_where_no_lane_asks": """
+    value = patient(params.in_int32[i, 0]) if params.in_int32[i, 1] > 1000000 else 2.5
+    params.out_float64[i, 0] = value
+""",
     "enum_in_the_index_of_a_target": """
     values = ox.FixedArray[int32, 8]()
     values[Mode.SECOND], values[Bits.A | Bits.BOTH], value = i, 2 * i, values[LIMIT]
@@ -91,10 +95,22 @@ PROGRAMS = {
 }
 
 
+HELPERS = """
+@ox.device
+def patient(value: int32) -> float64:
+    turns = 0
+    while True:
+        turns += 1
+        if turns > 2 or value != 0:
+            break
+    return float64(-7.5)
+"""
+
+
 def module_text() -> str:
     """All of them in one shader file."""
     head = "\n\n@ox.program\ndef __raygen__{}():\n    i = int32(ox.get_launch_index().x)\n    state = State(1, 0){}"
-    return PRELUDE + "".join(head.format(name, body) for name, body in PROGRAMS.items())
+    return PRELUDE + HELPERS + "".join(head.format(name, body) for name, body in PROGRAMS.items())
 
 
 def test_ways_agree(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -90,10 +90,14 @@ class LaneFunction:
             if not isinstance(self._function.result, Void):
                 if self._clone.returns_apart:
                     self._writer.line("return result;")
-                elif ends_in_loop(self._function.body):
+                elif ends_in_loop(self._function.body) or self._may_run_out_of_lanes():
                     self._writer.line("return {};")
         self._writer.leave_source()
         self._writer.line()
+
+    def _may_run_out_of_lanes(self) -> bool:
+        """Whether a part of the function, its return with it, is skipped where no lane is left: a conditional part can call with none."""
+        return any(id(statement) in self._clone.exits for statement in statements(self._function.body))
 
     def _write_hidden_locals(self) -> None:
         needs, names = self._signatures.needs(self._function.name), self._names
