@@ -23,14 +23,15 @@ void intersectCap(const OxrtGeometry& view, unsigned, unsigned primitive, LaneHi
     const auto& caps = *static_cast<const CurveCaps*>(view.shape);
     const CurveEnd& end = caps.ends[primitive];
     const float u = static_cast<float>(end.end);
-    const Cubic segment = segmentAt(*caps.curves, end.segment, keyPosition(caps.curves->keyCount, hits.ray.time));
-    const Point4 center = segment.at(u);
-    const Point4 normal = axisAt(segment, u) * (end.end ? 1.0f : -1.0f);
+    const Beside beside = besideRay(segmentAt(*caps.curves, end.segment, keyPosition(caps.curves->keyCount, hits.ray.time)), hits.ray);
+    const Point4 center = beside.segment.at(u);
+    const Point4 normal = axisAt(beside.segment, u) * (end.end ? 1.0f : -1.0f);
     const float cosine = dot3(hits.ray.direction, normal);
     if (!(cosine < 0)) return;
-    const float t = dot3(center - hits.ray.origin, normal) / cosine;
-    const Point4 away = hits.ray.origin + hits.ray.direction * t - center;
-    if (dot3(away, away) <= center.w * center.w) hits.offer({t, u, 0, normal, caps.curvesID, end.segment});
+    const float t = dot3(center, normal) / cosine;
+    const Point4 away = hits.ray.direction * t - center;
+    if (!(dot3(away, away) <= center.w * center.w)) return;
+    hits.offer({static_cast<float>(beside.shift + static_cast<double>(t)), u, 0, normal, caps.curvesID, end.segment});
 }
 
 void capBounds(const RTCBoundsFunctionArguments* arguments)

@@ -126,6 +126,25 @@ Cubic segmentAt(const OxrtGeometry& view, std::uint32_t primitive, const KeyPosi
     return cubicOf(kind.basis, between);
 }
 
+Beside besideRay(const Cubic& segment, const LaneRay& ray)
+{
+    const Point4 middle = segment.at(0.5f);
+    const double direction[3] = {ray.direction.x, ray.direction.y, ray.direction.z};
+    const double origin[3] = {ray.origin.x, ray.origin.y, ray.origin.z};
+    const double away[3] = {middle.x - origin[0], middle.y - origin[1], middle.z - origin[2]};
+    double along = 0;
+    double lengthSquared = 0;
+    for (int axis = 0; axis < 3; ++axis) {
+        along += away[axis] * direction[axis];
+        lengthSquared += direction[axis] * direction[axis];
+    }
+    const double shift = along / lengthSquared;
+    const auto moved = [&](float a, int axis) { return static_cast<float>(a - (origin[axis] + shift * direction[axis])); };
+    Cubic near = segment;
+    near.a = {moved(segment.a.x, 0), moved(segment.a.y, 1), moved(segment.a.z, 2), segment.a.w};
+    return {near, shift};
+}
+
 RTCBounds segmentBounds(const OxrtGeometry& view, std::uint32_t primitive, std::uint32_t key)
 {
     const Cubic segment = segmentAt(view, primitive, {key, 0});

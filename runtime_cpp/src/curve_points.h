@@ -17,6 +17,14 @@ Cubic segmentAt(const OxrtGeometry& view, std::uint32_t primitive, const KeyPosi
 // The bounds at one motion key of the spheres along a segment.
 RTCBounds segmentBounds(const OxrtGeometry& view, std::uint32_t primitive, std::uint32_t key);
 
+// A segment as the ray sees it from its point beside the middle of the segment, which is `shift` along the ray: the ray's origin is 0 then.
+// Seen from far away the way to the segment is long and what counts of it is short, so the difference is taken in double precision.
+struct Beside {
+    Cubic segment;
+    double shift;
+};
+Beside besideRay(const Cubic& segment, const LaneRay& ray);
+
 // A flat end of a strand: where the curve begins (end 0) or stops (end 1).
 struct CurveEnd {
     std::uint32_t segment;

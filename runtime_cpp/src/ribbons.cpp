@@ -81,25 +81,26 @@ Across acrossAt(const OxrtGeometry& view, std::uint32_t primitive, const KeyPosi
     return readAcross(between);
 }
 
-// Where axis and direction across lie in one plane with the ray: cross(axis - origin, across) . direction = 0.
-Polynomial planeCondition(const Cubic& axis, const Cubic& across, const LaneRay& ray)
+// Where axis and direction across lie in one plane with the ray, whose origin is 0: cross(axis, across) . direction = 0.
+Polynomial planeCondition(const Cubic& axis, const Cubic& across, const Point4& direction)
 {
-    const Point4 from[3] = {axis.a - ray.origin, axis.b, axis.c};
+    const Point4 from[3] = {axis.a, axis.b, axis.c};
     const Point4 wide[4] = {across.a, across.b, across.c, across.d};
     Polynomial condition;
     for (int i = 0; i < 3; ++i)
-        for (int j = 0; j < 4; ++j) condition.terms[i + j] += static_cast<double>(dot3(cross3(from[i], wide[j]), ray.direction));
+        for (int j = 0; j < 4; ++j) condition.terms[i + j] += static_cast<double>(dot3(cross3(from[i], wide[j]), direction));
     return condition;
 }
 
 void intersectRibbon(const OxrtGeometry& view, unsigned geometry, unsigned primitive, LaneHits& hits)
 {
     const KeyPosition position = keyPosition(view.keyCount, hits.ray.time);
-    const Cubic axis = segmentAt(view, primitive, position);
+    const Beside beside = besideRay(segmentAt(view, primitive, position), hits.ray);
+    const Cubic& axis = beside.segment;
     const Cubic across = acrossAt(view, primitive, position).above(axis);
-    double roots[Polynomial::mostRoots];
-    const int count = rootsIn01(planeCondition(axis, across, hits.ray), roots);
     const Point4& direction = hits.ray.direction;
+    double roots[Polynomial::mostRoots];
+    const int count = rootsIn01(planeCondition(axis, across, direction), roots);
     const float lengthSquared = dot3(direction, direction);
     LaneHit found[Polynomial::mostRoots];
     int foundCount = 0;
@@ -107,7 +108,7 @@ void intersectRibbon(const OxrtGeometry& view, unsigned geometry, unsigned primi
         const float u = static_cast<float>(roots[i]);
         const Point4 center = axis.at(u);
         const Point4 wide = normalize3(across.at(u));
-        const Point4 away = hits.ray.origin - center;
+        const Point4 away = center * -1.0f;
         // The nearest points of two lines: the ray, and the one across the ribbon.
         const float between = dot3(wide, direction);
         const float sine = lengthSquared - between * between;
@@ -115,7 +116,8 @@ void intersectRibbon(const OxrtGeometry& view, unsigned geometry, unsigned primi
         const float side = (dot3(away, wide) * lengthSquared - dot3(away, direction) * between) / sine;
         const float v = side / center.w;
         if (!(std::fabs(v) <= 1)) continue;
-        const float t = (dot3(away, wide) * between - dot3(away, direction)) / sine;
+        const float beyond = (dot3(away, wide) * between - dot3(away, direction)) / sine;
+        const float t = static_cast<float>(beside.shift + static_cast<double>(beyond));
         const Point4 normal = cross3(axis.slope(u), wide);
         const float cosine = dot3(normal, direction);
         if (!(cosine * cosine > inPlane * inPlane * dot3(normal, normal) * lengthSquared)) continue;

@@ -18,8 +18,9 @@ constexpr int mostHits = 4;
 // A segment in the space of a ray: x and y across it, z along it in units of length.
 struct AlongRay {
     Cubic curve;
-    float shift;  // z of the ray's origin is -shift
-    float length; // of the direction
+    Point4 axes[3]; // x, y, z
+    double shift;   // from the ray's origin to z = 0, in units of its direction
+    float length;   // of the direction
 
     // The ray's squared distance from the axis beyond the radius, negative outside of the sphere at u; and half its derivative.
     float depth(const Point4& p) const { return p.w * p.w - p.x * p.x - p.y * p.y; }
@@ -36,17 +37,15 @@ struct AlongRay {
 
 AlongRay alongRay(const Cubic& segment, const LaneRay& ray)
 {
+    const Beside beside = besideRay(segment, ray);
     const float length = std::sqrt(dot3(ray.direction, ray.direction));
     const Point4 z = ray.direction * (1 / length);
     const Point4 helper = std::fabs(z.x) < 0.5f ? Point4{1, 0, 0, 0} : Point4{0, 1, 0, 0};
     const Point4 x = normalize3(cross3(helper, z));
     const Point4 y = cross3(z, x);
-    const Point4 away = segment.at(0.5f) - ray.origin;
-    const float shift = dot3(away, z);
-    Point4 base = ray.origin + z * shift;
-    base.w = 0;
     const auto turned = [&](const Point4& p) { return Point4{dot3(p, x), dot3(p, y), dot3(p, z), p.w}; };
-    return {{turned(segment.a - base), turned(segment.b), turned(segment.c), turned(segment.d)}, shift, length};
+    const Cubic& near = beside.segment;
+    return {{turned(near.a), turned(near.b), turned(near.c), turned(near.d)}, {x, y, z}, beside.shift, length};
 }
 
 // Whether the ray may come within the radius of the part of the curve with these Bezier points.
@@ -93,6 +92,7 @@ float minimumIn(const AlongRay& along, float low, float high, float slopeLow, fl
 
 struct Entry {
     float t, u;
+    Point4 normal;
 };
 
 // Where the ray enters the spheres along the segment, nearest first.
@@ -113,7 +113,9 @@ int findEntries(const AlongRay& along, Entry (&entries)[mostHits])
             const Point4 p = along.curve.at(u);
             const float depth = along.depth(p);
             if (!(depth >= 0) || !(p.w > 0)) continue;
-            const Entry entry = {(p.z - std::sqrt(depth) + along.shift) / along.length, u};
+            const float half = std::sqrt(depth);
+            const float t = static_cast<float>(along.shift + static_cast<double>((p.z - half) / along.length));
+            const Entry entry = {t, u, (along.axes[0] * p.x + along.axes[1] * p.y + along.axes[2] * half) * -1.0f};
             int place = count++;
             for (; place > 0 && entries[place - 1].t > entry.t; --place) entries[place] = entries[place - 1];
             entries[place] = entry;
@@ -134,9 +136,7 @@ void intersectSegment(const OxrtGeometry& view, unsigned geometry, unsigned prim
     Entry entries[mostHits];
     const int count = findEntries(along, entries);
     for (int i = 0; i < count; ++i) {
-        const Point4 axis = segment.at(entries[i].u);
-        const Point4 normal = hits.ray.origin + hits.ray.direction * entries[i].t - axis;
-        if (!hits.offer({entries[i].t, entries[i].u, 0, normal, geometry, primitive})) return;
+        if (!hits.offer({entries[i].t, entries[i].u, 0, entries[i].normal, geometry, primitive})) return;
     }
 }
 
