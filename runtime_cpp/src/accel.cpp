@@ -171,7 +171,8 @@ void Accel::setUpScene()
     RTCBuildQuality quality = RTC_BUILD_QUALITY_MEDIUM;
     if (buildFlags & OXRT_BUILD_FLAG_PREFER_FAST_TRACE) quality = RTC_BUILD_QUALITY_HIGH;
     if (buildFlags & OXRT_BUILD_FLAG_PREFER_FAST_BUILD) quality = RTC_BUILD_QUALITY_LOW;
-    if (updatable()) { // the only combination in which Embree refits instead of building again
+    const bool holdsInstances = instances && instances->isNative(); // which Embree never refits: it builds over them again, and quickly
+    if (updatable() && !holdsInstances) { // the only combination in which Embree refits instead of building again
         flags |= RTC_SCENE_FLAG_DYNAMIC;
         quality = RTC_BUILD_QUALITY_LOW;
     }

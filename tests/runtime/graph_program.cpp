@@ -13,6 +13,7 @@ struct GraphPrograms : oxrt::NoPrograms {
     static constexpr bool hasClosestHit = true;
     static constexpr bool hasMiss = true;
     static constexpr bool usesTime = true;
+    static constexpr bool usesMicromaps = true;
 
     // Records hold nothing here: what a hit is, is read from the ray.
     static void closestHit(oxrt::Ray&, Payload&, const OxrtRecordHeader&) {}
