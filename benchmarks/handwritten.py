@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 
 from benchmarks.scenes import MATERIALS, QUAD_TRIANGLES, SUN, Floats, Scene
 from benchmarks.workloads import Workload
+from optixc.toolchain import WHOLE_VECTORS, processor_lanes
 
 ROOT = Path(__file__).resolve().parents[1]
 KERNELS = Path(__file__).resolve().parent / "kernels"
@@ -62,11 +63,19 @@ def embree_library() -> Path:
     return found[0]
 
 
+def _whole_vectors(compiler: str) -> tuple[str, ...]:
+    """The flags by which compiled pipelines copy 16 lanes in whole registers."""
+    if processor_lanes() < 16:
+        return ()
+    return WHOLE_VECTORS["clang" if "clang" in compiler else "gcc"]
+
+
 def build(source: str, compiler: str, extra_flags: tuple[str, ...] = ()) -> Path:
     """Compiles kernels/`source`.cpp unless a build of the same text, flags and compiler is there."""
     embree = embree_library()
     texts = [path.read_bytes() for path in sorted(KERNELS.glob("*.h"))] + [(KERNELS / f"{source}.cpp").read_bytes()]
     texts += [(INCLUDE / "oxrt" / "embree.h").read_bytes(), compiler_version(compiler).encode(), str(embree).encode()]
+    extra_flags = (*extra_flags, *_whole_vectors(compiler))
     key = hashlib.sha256(b"\0".join([*texts, " ".join([*FLAGS, *extra_flags]).encode()])).hexdigest()[:16]
     output = BUILD / f"{source}-{compiler}-{key}.so"
     if not output.exists():

