@@ -151,3 +151,24 @@ def _fault(strand: Strand, shot: Shot, found: list[dict[str, Any]]) -> str:
         ("off the surface", off > blur or (off < -blur and not is_cap)),
         ("off the plane across the axis", aside > 2.0 * blur and (is_cap or strand.kind in SWEPT_CIRCLES))) if is_bad]
     return f"{bad}: {strand} {shot} {found[0]}" if bad else ""
+
+
+@pytest.mark.parametrize("kind", ROCAPS, ids=hex)
+def test_rocaps_are_met_as_well_from_far_away(harness: Harness, kind: int) -> None:
+    random = np.random.default_rng(kind)
+    points = np.column_stack([np.arange(4.0), random.uniform(-0.2, 0.2, (4, 2)), np.full(4, 0.1)]).astype(np.float32).astype(np.float64)
+    strand = Strand(kind, points[: BASES[kind].shape[1]])
+    middle = np.array([0.5**k for k in range(len(strand.terms(0)))]) @ strand.terms(0)
+    directions = np.cross(random.normal(size=(8, 3)), [1.0, 0.0, 0.0])
+    directions /= np.linalg.norm(directions, axis=1, keepdims=True)
+    origins = (middle[:3] - 1e6 * directions).astype(np.float32).astype(np.float64)
+    directions = (middle[:3] - origins).astype(np.float32).astype(np.float64)
+    item = {"type": "curves", "curveType": hex(kind), "vertices": [strand.points[:, :3].ravel().tolist()],
+            "radii": [strand.points[:, 3].tolist()], "indices": [0], "flags": [0], "numSbtRecords": 1, "endcapFlags": 0}
+    results = trace(harness, [gas(item)], [ray(*one) for one in zip(origins.tolist(), directions.tolist(), strict=True)],
+                    [hitgroup(kind="curve")])
+    for origin, direction, result in zip(origins, directions, results, strict=True):
+        exact = strand_hits(strand, origin, direction)[0]
+        (hit,) = calls(result, "CH")
+        assert hit["tmax"] == pytest.approx(exact.t, rel=2.0**-23)
+        assert hit["u"] == pytest.approx(exact.u, abs=2e-5)

@@ -6,6 +6,8 @@ import brute_force
 import numpy as np
 import pytest
 from harness import Harness
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
 from scenes import calls, closest, gas, hitgroup, missed, offsets, ray, require, trace
 
 IGNORE = 1
@@ -76,6 +78,36 @@ def test_random_spheres_agree_with_brute_force(harness: Harness) -> None:
         if hits:
             assert closest(result)["prim"] == hits[0].primitive
             assert closest(result)["tmax"] == pytest.approx(hits[0].t, rel=1e-3)
+
+
+@settings(max_examples=12, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture], derandomize=True)
+@given(seed=st.integers(0, 10_000), scale=st.sampled_from([1e-4, 1.0, 1e4]), distance=st.sampled_from([0.0, 0.9, 3.0, 1e3, 1e5]),
+       place=st.sampled_from([0.0, 30.0]))
+def test_spheres_of_every_scale_near_and_far(harness: Harness, seed: int, scale: float, distance: float, place: float) -> None:
+    random = np.random.default_rng(seed)
+    center = np.float32(scale * place * random.normal(size=3))
+    radius = float(np.float32(scale * random.uniform(0.5, 1.0)))
+    scene = [gas(spheres([center], [radius]))]
+    # From inside, grazing, and past; the rounding of coordinates is what binary32 leaves of the largest of them
+    aside = random.normal(size=(20, 3))
+    aside /= np.linalg.norm(aside, axis=1, keepdims=True)
+    directions = np.cross(aside, random.normal(size=(20, 3)))
+    directions /= np.linalg.norm(directions, axis=1, keepdims=True)
+    across = radius * random.choice([0.0, 0.5, 0.95, 1.05, 1.5], (20, 1))
+    origins = np.float32(center + across * aside - scale * distance * directions)
+    rays = [ray(origin, direction) for origin, direction in zip(origins, np.float32(directions), strict=True)]
+    blur = 4.0 * 2.0**-23 * (scale * (distance + place * 3.0) / radius + 1.0)
+    for result, one in zip(shoot(harness, scene, *rays), rays, strict=True):
+        o, d = (np.asarray(one["in"][key], np.float32).astype(np.float64) for key in ("o", "d"))
+        to_center = center.astype(np.float64) - o
+        nearest = np.linalg.norm(np.cross(to_center, d)) / np.linalg.norm(d) / radius
+        along = float(to_center @ d) / float(d @ d)
+        entry = along - radius * np.sqrt(max(0.0, 1.0 - nearest**2)) / float(np.linalg.norm(d))
+        if abs(nearest - 1.0) > blur and abs(entry) > 4.0 * blur * radius:
+            assert missed(result) == (nearest > 1.0 or entry < 0.0), one
+            if not missed(result):
+                slack = blur * radius / max(0.05, np.sqrt(max(0.0, 1.0 - nearest**2)))
+                assert abs(closest(result)["tmax"] - entry) * float(np.linalg.norm(d)) <= slack, (one, entry)
 
 
 @pytest.mark.parametrize("radius", [1e-6, 1e-3, 1e2, 1e3, 1e4, 1e5, 1e6])
