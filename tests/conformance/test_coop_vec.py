@@ -194,6 +194,37 @@ def test_sums_are_those_of_one_thread(tmp_path: Path) -> None:
         assert np.array_equal(one, many)
 
 
+@ox.struct
+class Layer:
+    matrix: ox.Array[ox.float32]
+    bias: ox.Array[ox.float32]
+    sums: ox.Array[ox.uint8]
+
+
+def test_each_record_has_its_matrix(harness: Harness) -> None:
+    """Launch indices of a packet multiply with the matrices of their own records, and add to their accumulators."""
+    module, create = harness.module(SHADER), harness.context.program_group_create
+    raygen, layer = create(raygen=module["__raygen__layers"]), create(direct_callable=module["__direct_callable__layer"])
+    size = harness.context.coop_vec_matrix_compute_size(5, N, Element.FLOAT32, Layout.TRAINING_OPTIMAL)
+    random = np.random.default_rng(3)
+    whole = [random.integers(-9, 9, (3, count)).astype(np.float32) for count in (5 * N, 5)]
+    layers = [Layer(matrix, bias, np.zeros(size, np.uint8)) for matrix, bias in zip(*whole, strict=True)]
+    table = ox.ShaderBindingTable(raygen=raygen.record(), callables=[layer.record(one) for one in layers])
+    given = params()
+    harness.launch(harness.pipeline("coop vec layers", [raygen, layer]), given, table, ROWS)
+    sums = [np.zeros((5, N)) for _ in layers]
+    for row in range(ROWS):
+        one, v = layers[row % 3], np.asarray(given.floats)[4 * row : 4 * row + N].astype(np.float64)
+        matrix, bias = np.asarray(one.matrix).reshape(5, N), np.asarray(one.bias)
+        assert np.array_equal(np.asarray(given.out)[0, row, :5], matrix @ v + bias), row
+        sums[row % 3] += np.outer(bias, v)
+    optimal = ox.CoopVecMatrixDescription(5, N, 0, Element.FLOAT32, Layout.TRAINING_OPTIMAL)
+    rows = ox.CoopVecMatrixDescription(5, N, 0, Element.FLOAT32)
+    for one, wanted in zip(layers, sums, strict=True):
+        found = harness.context.coop_vec_matrix_convert([optimal], np.asarray(one.sums), [rows]).view(np.float32)
+        assert np.array_equal(found[: 5 * N].reshape(5, N), wanted)
+
+
 FAULTS = [
     ("past_the_end", {"offset": 8064}, "192 bytes from offset 8064 end behind the array, which has 8192 bytes", "past the end"),
     ("past_the_end", {"offset": 32}, "offset 32 is no multiple of 64", "past the end"),
@@ -204,6 +235,15 @@ FAULTS = [
     ("sum_past_the_end", {"offset": 2}, "offset 2 is no multiple of 4", "sum"),
     ("product_past_the_end", {"offset": 5504}, "3072 bytes from offset 5504 end behind the array, which has 8192 bytes", "product"),
 ]
+
+
+def test_accumulators_begin_at_words(tmp_path: Path) -> None:
+    """Exchanges of numbers that straddle words would stop all other threads."""
+    harness = Harness("simd16", ox.DeviceContext(validation=True))
+    memory = np.zeros(8196, np.uint8)
+    odd = memory[4 - memory.ctypes.data % 4 + 1 :][:8000]
+    with pytest.raises(ox.OptixError, match="begins at an address that is no multiple of 4"):
+        run(harness, "accumulates", params(memory=odd, offset=0), 4)
 
 
 @pytest.mark.parametrize(("name", "changed", "text", "place"), FAULTS)

@@ -78,7 +78,7 @@ OXRT_COOP_VEC_2(coopVecSub, x - y)
 OXRT_COOP_VEC_2(coopVecStep, select(y < x, C(ElementOf<C>(0)), C(ElementOf<C>(1))))
 #undef OXRT_COOP_VEC_2
 
-/* a * b + c, rounded once in the type of arithmetic. */
+/* a * b + c, rounded once in the type of arithmetic, and then to T. */
 template <class T, int N, class A, class B, class C>
 OXRT_INLINE auto coopVecFFMA(const CoopVec<T, N, A>& a, const CoopVec<T, N, B>& b, const CoopVec<T, N, C>& c) {
     return mapItems<T, N>([](auto p, auto q, auto r) {
@@ -100,6 +100,9 @@ template <class To, class T, int N, class X> OXRT_INLINE auto coopVecCvt(const C
 }
 
 /* ---- memory -------------------------------------------------------------------------------------------------------------------- */
+
+/* Of offsets, in bytes. */
+enum : uint32_t { MATRIX_ALIGNMENT = 64, VECTOR_ALIGNMENT = 16, ACCUMULATOR_ALIGNMENT = 4 };
 
 /* What says which memory a call may touch, for one launch index; over lanes it has a mask. */
 template <class S> concept PlainSpans = !requires(S spans) { spans.mask; };
@@ -126,14 +129,14 @@ struct CheckedSpans {
         else if (__builtin_expect(offset + bytes > size, 0))
             faultWithValues(thread, OXRT_FAULT_BOUNDS, "\1 bytes from offset \1 end behind the array, which has \1 bytes", place, bytes, offset,
                             size);
+        else if (__builtin_expect(alignment == ACCUMULATOR_ALIGNMENT && reinterpret_cast<uint64_t>(array.data) % 4 != 0, 0))
+            fault(thread, OXRT_FAULT_BOUNDS, "the array begins at an address that is no multiple of 4", place);
         else
             return true;
         return false;
     }
 };
 OXRT_INLINE CheckedSpans checkedSpans(OxrtThread& thread, Place place) { return {thread, place}; }
-
-enum : uint32_t { MATRIX_ALIGNMENT = 64, VECTOR_ALIGNMENT = 16, ACCUMULATOR_ALIGNMENT = 4 };
 
 /* V, which is held as in memory, from an offset in bytes. */
 template <class V, PlainSpans Spans, class T, int RANK> OXRT_INLINE V coopVecLoad(Spans spans, const Array<T, RANK>& array, uint32_t offset) {

@@ -122,6 +122,28 @@ def __raygen__values():
     write(row, 8, sizes)
 
 
+@ox.struct
+class Layer:
+    matrix: ox.Array[ox.float32]
+    bias: ox.Array[ox.float32]
+    sums: ox.Array[ox.uint8]
+
+
+@ox.program
+def __direct_callable__layer(v: ox.CoopVec[ox.float32, 24], layer: Layer) -> ox.CoopVec[ox.float32, 5]:
+    out = ox.coop_vec_mat_mul(ox.CoopVec[ox.float32, 5], v, layer.matrix, bias=layer.bias)
+    ox.coop_vec_outer_product_accumulate(ox.coop_vec_load(ox.CoopVec[ox.float32, 5], layer.bias), v, layer.sums)
+    return out
+
+
+@ox.program
+def __raygen__layers():
+    row = ox.get_launch_index().x
+    v = ox.coop_vec_load(Floats, params.floats, row * 16)
+    out = ox.direct_call(row % 3, v, result=ox.CoopVec[ox.float32, 5])
+    write(row, 0, out)
+
+
 @ox.program
 def __raygen__accumulates():
     i = ox.get_launch_index()
