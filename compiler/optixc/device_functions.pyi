@@ -1455,7 +1455,7 @@ def coop_vec_step(a: Any, b: Any) -> Any:
     """0 where the element of b is below that of a, else 1."""
 
 def coop_vec_ffma(a: Any, b: Any, c: Any) -> Any:
-    """a * b + c, element by element, without a rounding in between."""
+    """a * b + c, element by element, without rounding in between."""
 
 def coop_vec_mat_mul(type: Any, vector: Any, matrix: Any, matrix_offset_in_bytes: int = ..., bias: Any = ..., bias_offset_in_bytes: int = ..., row_column_stride_in_bytes: int = ..., input_interpretation: int = ..., matrix_layout: int = ..., transpose: bool = ..., matrix_element_type: int = ..., bias_element_type: int = ...) -> Any:
     """matrix * vector + bias, as a vector of `type`; an element type that is UNKNOWN is that of the vector or result."""

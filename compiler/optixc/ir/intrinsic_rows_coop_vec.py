@@ -74,7 +74,7 @@ ROWS: tuple[Intrinsic, ...] = (
     _two("Add", "Sum, element by element."),
     _two("Sub", "Difference, element by element."),
     _two("Step", "0 where the element of b is below that of a, else 1."),
-    _row("FFMA", (("a", _VECTOR), ("b", _VECTOR), ("c", _VECTOR)), _VECTOR, "a * b + c, element by element, without a rounding in between."),
+    _row("FFMA", (("a", _VECTOR), ("b", _VECTOR), ("c", _VECTOR)), _VECTOR, "a * b + c, element by element, without rounding in between."),
     _MAT_MUL,
     _row(
         "ReduceSumAccumulate",
