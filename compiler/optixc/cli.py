@@ -189,6 +189,12 @@ def _write(chosen: argparse.Namespace, unit: driver.Unit, names: list[str], opti
             )
     except OSError as error:
         raise FileIoError(f"{error.filename or stem} cannot be written: {error.strerror}") from error
+    if outputs[0].with_suffix(".py").exists():
+        print(
+            f"optixc: warning: {outputs[0]} lies beside {outputs[0].with_suffix('.py').name}: Python's `import {stem.name}` would take it "
+            "for an extension module; give -o another folder or name",
+            file=sys.stderr,
+        )
 
 
 def _stem(chosen: argparse.Namespace) -> Path:

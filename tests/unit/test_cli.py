@@ -58,9 +58,12 @@ def test_writes_library_header_and_manifest(shader: Path, tmp_path: Path) -> Non
     assert [Path(name).name for name in inputs.split()] == ["shader.py", "half.py"]
 
 
-def test_the_default_output_is_named_after_the_shader(shader: Path, tmp_path: Path) -> None:
+def test_the_default_output_is_named_after_the_shader(shader: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert cli.main([str(shader), "-O1"]) == 0
     assert {"shader.so", "shader.h", "shader.json"} <= {path.name for path in tmp_path.iterdir()}
+    assert "warning: shader.so lies beside shader.py: Python's `import shader` would take it" in capsys.readouterr().err
+    assert cli.main([str(shader), "-O1", "-o", "build/shader"]) == 0
+    assert capsys.readouterr().err == ""
 
 
 @pytest.mark.parametrize(("output", "made"), [("out/", "out/shader"), ("out/made.so", "out/made"), ("out/ma de-1.x", "out/ma de-1.x")])
