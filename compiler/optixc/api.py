@@ -168,12 +168,14 @@ class DeviceContext(Context):
         math: str = "precise",
         debug: bool = False,
         trap_nan: bool = False,
+        checks_bounds: bool = True,
     ) -> Pipeline:
         """Compiles the programs of `groups` together, or takes them from the cache.
 
         `max_trace_depth` bounds recursive traces; `bound_values` become constants; `simd` is "auto", 1, 8 or 16 lanes; `math` is
         "precise" or "fast"; `debug` checks array bounds and assertions and keeps line information; with it,
-        `trap_nan` ends the launch at the first NaN.
+        `trap_nan` ends the launch at the first NaN. `checks_bounds=False` leaves out the look at array indices, which costs up to some
+        percent; an index out of range then reads and writes other memory.
         """
         _ = self.handle
         if isinstance(groups, ProgramGroup) or not isinstance(groups, Sequence) or not groups:
@@ -196,6 +198,7 @@ class DeviceContext(Context):
             math=math,
             debug=debug,
             trap_nan=trap_nan,
+            checks_bounds=checks_bounds,
             validation=self.validation,
             bound_values={name: one.value for name, one in bound.items()},
         )

@@ -103,8 +103,9 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument(
         "--max-trace-depth", type=int, default=1, metavar="N", help=f"nesting of traces, 0 to {MAX_TRACE_DEPTH} (default: 1)"
     )
-    parser.add_argument("--debug", action="store_true", help="bounds checks, assertions, line information, no optimisation")
+    parser.add_argument("--debug", action="store_true", help="assertions, line information, no optimisation")
     parser.add_argument("--trap-nan", action="store_true", help="with --debug: the first float that becomes NaN ends the launch")
+    parser.add_argument("--no-bounds-checks", action="store_true", help="let array indices out of range reach other memory")
     parser.add_argument(
         "-O", dest="optimization", type=int, choices=(0, 1, 2, 3), default=3, help="optimisation of the C++ compiler (default: 3)"
     )
@@ -128,6 +129,7 @@ def _compile(chosen: argparse.Namespace) -> None:
         math=chosen.math,
         debug=chosen.debug,
         trap_nan=chosen.trap_nan,
+        checks_bounds=not chosen.no_bounds_checks,
         target=chosen.target,
         optimization=chosen.optimization,
         bound_values=dict(_bound_value(text) for text in chosen.bind),

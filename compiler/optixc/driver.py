@@ -216,6 +216,7 @@ def pipeline_options(options: CompileOptions, params: t.Struct | None) -> nodes.
         fast_math=options.math == "fast",
         debug=options.debug,
         trap_nan=options.trap_nan,
+        checks_bounds=options.checks_bounds,
         validation=options.validation,
         uses_motion_blur=options.pipeline.uses_motion_blur,
         allow_opacity_micromaps=options.pipeline.allow_opacity_micromaps,

@@ -68,6 +68,7 @@ class CompileOptions:
     math: str = "precise"
     debug: bool = False
     trap_nan: bool = False
+    checks_bounds: bool = True
     validation: bool = False
     target: str = "native"
     optimization: int = 3
@@ -87,12 +88,12 @@ class CompileOptions:
         is_number = isinstance(self.max_trace_depth, int) and not isinstance(self.max_trace_depth, bool)
         if not is_number or not 0 <= self.max_trace_depth <= MAX_TRACE_DEPTH:
             raise InvalidValueError(f"max_trace_depth must be 0 to {MAX_TRACE_DEPTH}, not {self.max_trace_depth!r}")
-        for name in ("debug", "trap_nan", "validation"):
+        for name in ("debug", "trap_nan", "checks_bounds", "validation"):
             if not isinstance(getattr(self, name), bool):
                 raise InvalidValueError(f"{name} must be False or True, not {getattr(self, name)!r}")
 
     def key(self) -> str:
         """A text that is equal exactly for equal options."""
         bound = sorted((name, repr(value)) for name, value in self.bound_values.items())
-        rest = (self.max_trace_depth, self.simd, self.math, self.debug, self.trap_nan, self.validation, self.target, self.optimization)
-        return repr((self.pipeline, rest, bound))
+        told = ("max_trace_depth", "simd", "math", "debug", "trap_nan", "checks_bounds", "validation", "target", "optimization")
+        return repr((self.pipeline, [getattr(self, name) for name in told], bound))

@@ -176,7 +176,7 @@ def __closesthit__c(ray: Ray):
 def test_T293_what_no_program_uses_is_not_compiled_in(tmp_path: Path, capsys: pytest.CaptureFixture[str], simd: str) -> None:
     path = tmp_path / "plain.py"
     words = ("usesTime", "usesMicromaps", "hasAnyHit", "hasIntersection", "hasMiss", "countsDepth", "mayThrow", "throwException",
-             "takeException", "isCancelled", "checked(", "print(", "ToWorld", "HitObject", "findCallable")
+             "takeException", "isCancelled", "print(", "ToWorld", "HitObject", "findCallable")
     path.write_text(PLAIN)
     assert main([str(path), "--emit", "cpp", "--simd", simd]) == 0
     text = capsys.readouterr().out

@@ -202,8 +202,8 @@ def test_other_launches_go_on(checked: Checked) -> None:
 @pytest.mark.parametrize("simd", [1, 8, 16])
 def test_without_validation_nothing_is_told(simd: int) -> None:
     loose = Checked(simd, validation=False)
-    for name in ("NaN in the origin", "negative tmin", "stale handle", "miss index", "hit record", "payload of a closest hit", "read",
-                 "write", "callables record", "arguments of a callable"):
+    for name in ("NaN in the origin", "negative tmin", "stale handle", "miss index", "hit record", "payload of a closest hit",
+                 "callables record", "arguments of a callable"):
         wrong = dict(FAULTS[name].wrong)
         if wrong.get("scene") == "stale":
             wrong["scene"] = loose.stale

@@ -99,9 +99,12 @@ def test_flags_are_known_through_or() -> None:
 
 
 def test_what_no_program_uses_is_not_compiled_in() -> None:
-    text = text_of(link([pinhole_module()], [program.name for program in pinhole_module().programs], n.PipelineOptions()))
-    for absent in ("hasAnyHit", "hasIntersection", "mayThrow", "countsDepth", "exceptionPending", "checked(", "isCancelled", "texture"):
+    names = [program.name for program in pinhole_module().programs]
+    text = text_of(link([pinhole_module()], names, n.PipelineOptions()))
+    for absent in ("hasAnyHit", "hasIntersection", "mayThrow", "countsDepth", "exceptionPending", "isCancelled", "texture"):
         assert absent not in text
+    assert "checked(" in text
+    assert "checked(" not in text_of(link([pinhole_module()], names, n.PipelineOptions(checks_bounds=False)))
 
 
 # ---- hidden arguments -----------------------------------------------------------------------------------------------------------

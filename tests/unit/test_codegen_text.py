@@ -32,7 +32,7 @@ def printer(is_checked: bool = False) -> Expressions:
     pipeline = n.Pipeline((), None, (), (), n.PipelineOptions())
     types = TypeNames((), Scope())
     names = FunctionNames({name: name for name in LOCALS}, "thread", "trace", "params", "hitObject")
-    options = Options(is_checked=is_checked, user_exceptions=False, traces_throw=False)
+    options = Options(is_checked=is_checked, has_assertions=is_checked, user_exceptions=False, traces_throw=False)
     return Expressions(ScalarDialect(types, Signatures(pipeline, types, Scope(), {}, {}), names, options))
 
 

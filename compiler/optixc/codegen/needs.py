@@ -63,6 +63,7 @@ class Options:
     """What of the pipeline's options changes what functions need."""
 
     is_checked: bool
+    has_assertions: bool
     user_exceptions: bool
     traces_throw: bool
     uses_motion: bool = False
@@ -72,7 +73,8 @@ def options_of(pipeline: Pipeline) -> Options:
     options = pipeline.options
     throwing = bool(options.exception_flags & EXCEPTION_FLAG_USER)
     return Options(
-        is_checked=options.debug or options.validation,
+        is_checked=options.checks_bounds or options.debug or options.validation,
+        has_assertions=options.debug or options.validation,
         user_exceptions=throwing,
         uses_motion=options.uses_motion_blur,
         traces_throw=throwing or bool(options.exception_flags & (EXCEPTION_FLAG_TRACE_DEPTH | EXCEPTION_FLAG_STACK_OVERFLOW)),
@@ -133,7 +135,7 @@ def _of_statement(statement: Stmt, options: Options) -> Needs:
         case Print():
             return Needs(thread=True)
         case Assert():
-            return Needs(thread=options.is_checked)
+            return Needs(thread=options.has_assertions)
         case While() | ForRange():
             return Needs(thread=polls(statement))
         case CallIntrinsic(name=name):

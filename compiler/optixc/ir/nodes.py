@@ -303,6 +303,7 @@ class PipelineOptions:
     fast_math: bool = False
     debug: bool = False
     trap_nan: bool = False
+    checks_bounds: bool = True
     validation: bool = False
     uses_motion_blur: bool = False
     allow_opacity_micromaps: bool = False

@@ -84,7 +84,7 @@ def features(pipeline: Pipeline) -> Features:
             _first(pipeline, "loops that poll for cancellation", lambda s: isinstance(s, While | ForRange) and polls(s)),
             _option("assertions", options.debug or options.validation, _first(pipeline, "", lambda s: isinstance(s, Assert)).span),
             _option("NaN traps", options.trap_nan),
-            _option("array bounds checks", options.debug or options.validation, _element(pipeline)),
+            _bounds_checks(pipeline),
             _option("validation", options.validation),
             _option("motion", options.uses_motion_blur),
             _option("opacity micromaps", options.allow_opacity_micromaps),
@@ -148,8 +148,11 @@ def _hit_objects(pipeline: Pipeline) -> Feature:
     return next((feature for feature in (traced, called, read) if feature.is_in), traced)
 
 
-def _element(pipeline: Pipeline) -> Span | None:
-    return _first_expression(pipeline, "", lambda e: isinstance(e, ElementRef)).span
+def _bounds_checks(pipeline: Pipeline) -> Feature:
+    options, name = pipeline.options, "array bounds checks"
+    if not (options.checks_bounds or options.debug or options.validation):
+        return Feature(name, False)
+    return _first_expression(pipeline, name, lambda e: isinstance(e, ElementRef))
 
 
 def _option(name: str, is_on: bool, span: Span | None = None) -> Feature:

@@ -120,14 +120,17 @@ template <class... T> __attribute__((noinline)) void print(OxrtThread& thread, c
 /* ---- checked access ------------------------------------------------------------------------------------------------------------- */
 
 /* Names the indices and the shape of the array that they miss. */
-template <class T, class... I> void faultOfIndex(OxrtThread& thread, Place place, const Array<T, 1>& array, I... indices) {
+template <class T, class... I>
+__attribute__((noinline, cold)) void faultOfIndex(OxrtThread& thread, Place place, const Array<T, 1>& array, I... indices) {
     faultWithValues(thread, OXRT_FAULT_BOUNDS, "index out of range (\1), the shape is (\1)", place, indices..., array.shape[0]);
 }
-template <class T, class... I> void faultOfIndex(OxrtThread& thread, Place place, const Array<T, 2>& array, I... indices) {
+template <class T, class... I>
+__attribute__((noinline, cold)) void faultOfIndex(OxrtThread& thread, Place place, const Array<T, 2>& array, I... indices) {
     faultWithValues(thread, OXRT_FAULT_BOUNDS, "index out of range (\1, \1), the shape is (\1, \1)", place, indices..., array.shape[0],
                     array.shape[1]);
 }
-template <class T, class... I> void faultOfIndex(OxrtThread& thread, Place place, const Array<T, 3>& array, I... indices) {
+template <class T, class... I>
+__attribute__((noinline, cold)) void faultOfIndex(OxrtThread& thread, Place place, const Array<T, 3>& array, I... indices) {
     faultWithValues(thread, OXRT_FAULT_BOUNDS, "index out of range (\1, \1, \1), the shape is (\1, \1, \1)", place, indices..., array.shape[0],
                     array.shape[1], array.shape[2]);
 }

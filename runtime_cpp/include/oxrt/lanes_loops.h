@@ -85,14 +85,19 @@ OXRT_INLINE void assertTrue(LanesThread<W>& thread, Place place, Lanes<bool, W> 
     }
 }
 
+/* A fault for the first of the lanes whose indices are outside of the array. */
+template <int W, class A, class... I>
+__attribute__((noinline, cold)) void faultOfLanes(LanesThread<W>& thread, Lanes<bool, W> outside, Place place, const A& array, I... indices) {
+    const int lane = firstLane(outside);
+    faultOfIndex(thread.atLane(lane), place, inLane(array, lane), inLane(indices, lane)...);
+}
+
 /* The lanes of the mask whose indices are inside of the array; a fault for the first that is not. */
 template <int W, class A, class... I>
 OXRT_INLINE Lanes<bool, W> insideAt(LanesThread<W>& thread, Lanes<bool, W> mask, Place place, const A& array, I... indices) {
     const Lanes<bool, W> found = mask & inside<W>(array, indices...);
-    if (const Lanes<bool, W> outside = without(mask, found); __builtin_expect(any(outside), 0)) {
-        const int lane = firstLane(outside);
-        faultOfIndex(thread.atLane(lane), place, inLane(array, lane), inLane(indices, lane)...);
-    }
+    if (const Lanes<bool, W> outside = without(mask, found); __builtin_expect(any(outside), 0))
+        faultOfLanes<W>(thread, outside, place, array, indices...);
     return found;
 }
 

@@ -141,14 +141,28 @@ template <int W, class Shape, class... I> OXRT_INLINE Lanes<uint64_t, W> longOff
     return result;
 }
 
+/* The lanes whose index is below the size; negative ones are not. Indices of a word are compared as words. */
+template <int W, class I> OXRT_INLINE Lanes<bool, W> isBelow(I index, uint64_t size) {
+    if constexpr (sizeof(ElementOf<I>) <= 4) {
+        constexpr uint64_t end = uint64_t(1) << (isSigned<ElementOf<I>> ? 31 : 32);
+        if (!isSigned<ElementOf<I>> && __builtin_expect(size >= end, 0))
+            return true;
+        return Lanes<uint32_t, W>(convert<uint32_t>(wordIndex(index))) < Lanes<uint32_t, W>(uint32_t(size < end ? size : end));
+    }
+    else
+        return Lanes<uint64_t, W>(longIndex(index)) < Lanes<uint64_t, W>(size);
+}
+
 /* The lanes whose indices are inside of the array. */
 template <int W, class T, int RANK, class... I> OXRT_INLINE Lanes<bool, W> inside(const Array<T, RANK>& array, I... indices) {
     Lanes<bool, W> result = true;
     int axis = 0;
-    ((result = result & (Lanes<uint64_t, W>(longIndex(indices)) < Lanes<uint64_t, W>(array.shape[axis])), ++axis), ...);
+    ((result = result & isBelow<W>(indices, array.shape[axis]), ++axis), ...);
     return result;
 }
 template <int W, class A, class... I> OXRT_INLINE Lanes<bool, W> inside(const VaryingArray<A, W>& array, I... indices) {
+    if (array.isShared)
+        return inside<W>(array.shared, indices...);
     Lanes<bool, W> result = true;
     int axis = 0;
     ((result = result & (Lanes<uint64_t, W>(longIndex(indices)) < array.shape[axis]), ++axis), ...);

@@ -3,6 +3,7 @@
    anyhit programs: shader.py:52
    occlusion queries: shader.py:39
    face and any-hit culling: shader.py:39
+   array bounds checks: shader.py:39
 */
 #include <oxrt/device.h>
 
@@ -52,13 +53,15 @@ void raygen_lights(OxrtThread& thread) {
 #line 37 "shader.py"
     uint32_t i = oxrt::getLaunchIndex(thread).x;
     Shadow shadow = Shadow{oxrt::float3(1.0f), 0};
-    oxrt::trace<ShadowPrograms>(thread, params.scene, params.light.at(i), oxrt::float3(0.0f, 1.0f, 0.0f), 0.0f, __builtin_inff(), 0.0f,
-            255u, params.flags, 0u, 1u, 0u, shadow);
+    oxrt::trace<ShadowPrograms>(thread, params.scene, oxrt::checked(thread).load(params.light, i), oxrt::float3(0.0f, 1.0f, 0.0f), 0.0f,
+            __builtin_inff(), 0.0f, 255u, params.flags, 0u, 1u, 0u, shadow);
 #line 40 "shader.py"
-    oxrt::trace<ShadowPrograms>(thread, params.scene, params.light.at(i), oxrt::float3(0.0f, 0.0f, 1.0f), 0.0f, __builtin_inff(), 0.0f,
-            255u, oxrt::KnownFlags<12>(), 1u, 1u, 0u, shadow);
+    oxrt::trace<ShadowPrograms>(thread, params.scene, oxrt::checked(thread).load(params.light, i), oxrt::float3(0.0f, 0.0f, 1.0f), 0.0f,
+            __builtin_inff(), 0.0f, 255u, oxrt::KnownFlags<12>(), 1u, 1u, 0u, shadow);
 #line 48 "shader.py"
-    params.light.at(i) = shadow.light;
+    if (oxrt::checked(thread).contains(params.light, i))
+#line 48 "shader.py"
+        params.light.at(i) = shadow.light;
 }
 
 #line 52 "shader.py"
@@ -87,7 +90,7 @@ void miss_dark(Shadow& shadow) {
     shadow.light = oxrt::float3(0.0f);
 }
 
-#line 91 "pipeline.cpp"
+#line 94 "pipeline.cpp"
 void ShadowPrograms::anyHit(oxrt::Ray& trace, Payload& payload, const OxrtRecordHeader& record) {
     if (record.programs[oxrt::SLOT_ANYHIT] == number::anyhit_glass)
         anyhit_glass(trace, payload, oxrt::recordData<Glass>(record));

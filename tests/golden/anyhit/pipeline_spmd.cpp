@@ -3,6 +3,7 @@
    anyhit programs: shader.py:52
    occlusion queries: shader.py:39
    face and any-hit culling: shader.py:39
+   array bounds checks: shader.py:39
 */
 #include <oxrt/device.h>
 
@@ -114,7 +115,7 @@ OXRT_INLINE void anyhit_glass(oxrt::Ray& trace, Shadow& shadow, const Glass& gla
     }
 }
 
-#line 118 "pipeline.cpp"
+#line 119 "pipeline.cpp"
 void stop_if_dark_lanes([[maybe_unused]] Rays& trace, [[maybe_unused]] Mask mask, const Wide<Shadow>& shadow);
 
 #line 36 "shader.py"
@@ -123,13 +124,13 @@ void raygen_lights_lanes([[maybe_unused]] Lanes& thread, [[maybe_unused]] Mask m
 #line 37 "shader.py"
     Wide<uint32_t> i = oxrt::getLaunchIndex(thread).x;
     Wide<Shadow> shadow = oxrt::spread<16>(Shadow{oxrt::float3(1.0f), 0});
-    oxrt::trace<ShadowProgramsLanes>(thread, mask, params.scene, oxrt::load<LANES>(mask, params.light, i), oxrt::float3(0.0f, 1.0f, 0.0f),
-            0.0f, __builtin_inff(), 0.0f, 255u, params.flags, 0u, 1u, 0u, shadow);
+    oxrt::trace<ShadowProgramsLanes>(thread, mask, params.scene, oxrt::checked(thread, mask).load(params.light, i), oxrt::float3(0.0f, 1.0f,
+            0.0f), 0.0f, __builtin_inff(), 0.0f, 255u, params.flags, 0u, 1u, 0u, shadow);
 #line 40 "shader.py"
-    oxrt::trace<ShadowProgramsLanes>(thread, mask, params.scene, oxrt::load<LANES>(mask, params.light, i), oxrt::float3(0.0f, 0.0f, 1.0f),
-            0.0f, __builtin_inff(), 0.0f, 255u, oxrt::KnownFlags<12>(), 1u, 1u, 0u, shadow);
+    oxrt::trace<ShadowProgramsLanes>(thread, mask, params.scene, oxrt::checked(thread, mask).load(params.light, i), oxrt::float3(0.0f, 0.0f,
+            1.0f), 0.0f, __builtin_inff(), 0.0f, 255u, oxrt::KnownFlags<12>(), 1u, 1u, 0u, shadow);
 #line 48 "shader.py"
-    oxrt::store<LANES>(mask, shadow.light, params.light, i);
+    oxrt::checked(thread, mask).store(shadow.light, params.light, i);
 }
 
 #line 30 "shader.py"
@@ -189,7 +190,7 @@ void miss_dark_lanes([[maybe_unused]] Lanes& thread, [[maybe_unused]] Mask mask,
     oxrt::assign(mask, shadow.light, oxrt::float3(0.0f));
 }
 
-#line 193 "pipeline.cpp"
+#line 194 "pipeline.cpp"
 void ShadowPrograms::anyHit(oxrt::Ray& trace, Payload& payload, const OxrtRecordHeader& record) {
     if (record.programs[oxrt::SLOT_ANYHIT] == number::anyhit_glass)
         anyhit_glass(trace, payload, oxrt::recordData<Glass>(record));

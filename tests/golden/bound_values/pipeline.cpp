@@ -1,5 +1,6 @@
 /* Made by optixc. Compiled features:
    miss programs: shader.py:51
+   array bounds checks: shader.py:47
    bound values: asked for by the pipeline's options
 */
 #include <oxrt/device.h>
@@ -47,7 +48,9 @@ void raygen_image(OxrtThread& thread) {
         color = color + ray.color;
     }
 #line 47 "shader.py"
-    params.image.at(i) = color / 4.0f;
+    if (oxrt::checked(thread).contains(params.image, i))
+#line 47 "shader.py"
+        params.image.at(i) = color / 4.0f;
 }
 
 #line 51 "shader.py"
@@ -55,7 +58,7 @@ void miss_white(Radiance& ray) {
     ray.color = oxrt::float3(1.0f);
 }
 
-#line 59 "pipeline.cpp"
+#line 62 "pipeline.cpp"
 void RadiancePrograms::miss(oxrt::Ray&, Payload& payload, const OxrtRecordHeader& record) {
     if (record.programs[0] == number::miss_white)
         miss_white(payload);

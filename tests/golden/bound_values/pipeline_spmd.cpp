@@ -1,5 +1,6 @@
 /* Made by optixc. Compiled features:
    miss programs: shader.py:51
+   array bounds checks: shader.py:47
    bound values: asked for by the pipeline's options
 */
 #include <oxrt/device.h>
@@ -93,7 +94,7 @@ void raygen_image_lanes([[maybe_unused]] Lanes& thread, [[maybe_unused]] Mask ma
         color = color + ray.color;
     }
 #line 47 "shader.py"
-    oxrt::store<LANES>(mask, color / 4.0f, params.image, i);
+    oxrt::checked(thread, mask).store(color / 4.0f, params.image, i);
 }
 
 #line 51 "shader.py"
@@ -101,7 +102,7 @@ void miss_white_lanes([[maybe_unused]] Lanes& thread, [[maybe_unused]] Mask mask
     oxrt::assign(mask, ray.color, oxrt::float3(1.0f));
 }
 
-#line 105 "pipeline.cpp"
+#line 106 "pipeline.cpp"
 void RadianceProgramsLanes::miss(Rays& trace, Mask mask, Payload& payload) {
     const Wide<int32_t> program = oxrt::recordPrograms(trace.records, mask, 0);
     if (const Mask own = mask & (program == int32_t(number::miss_white)); oxrt::any(own))

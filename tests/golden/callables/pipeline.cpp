@@ -2,6 +2,7 @@
    direct callable programs: shader.py:31
    continuation callable programs: shader.py:43
    callables: shader.py:26
+   array bounds checks: shader.py:27
 */
 #include <oxrt/device.h>
 
@@ -34,7 +35,9 @@ void raygen_materials(OxrtThread& thread) {
     oxrt::float3 color = directCall(thread, params.material, uv);
     oxrt::float3 result_2 = continuationCall(thread, 0u, color);
 #line 27 "shader.py"
-    params.colors.at(i) = color + result_2;
+    if (oxrt::checked(thread).contains(params.colors, i))
+#line 27 "shader.py"
+        params.colors.at(i) = color + result_2;
 }
 
 #line 31 "shader.py"
@@ -58,7 +61,7 @@ oxrt::float3 continuation_callable_glow(oxrt::float3 color) {
     return 0.1f * color;
 }
 
-#line 62 "pipeline.cpp"
+#line 65 "pipeline.cpp"
 oxrt::float3 directCall(OxrtThread& thread, uint32_t index, oxrt::float2 a0, oxrt::Place place) {
     if (!oxrt::enterCallable<false>(thread, place)) return {};
     const OxrtRecordHeader* record = oxrt::findCallable(thread, index, 0, place);

@@ -2,6 +2,7 @@
    direct callable programs: shader.py:31
    continuation callable programs: shader.py:43
    callables: shader.py:26
+   array bounds checks: shader.py:27
 */
 #include <oxrt/device.h>
 
@@ -65,7 +66,7 @@ void raygen_materials_lanes([[maybe_unused]] Lanes& thread, [[maybe_unused]] Mas
     Wide<oxrt::float3> color = directCall_lanes(thread, mask, Wide<uint32_t>(params.material), uv);
     Wide<oxrt::float3> result_2 = continuationCall_lanes(thread, mask, Wide<uint32_t>(0u), color);
 #line 27 "shader.py"
-    oxrt::store<LANES>(mask, color + result_2, params.colors, i);
+    oxrt::checked(thread, mask).store(color + result_2, params.colors, i);
 }
 
 #line 31 "shader.py"
@@ -105,7 +106,7 @@ Wide<oxrt::float3> continuation_callable_glow_lanes([[maybe_unused]] Lanes& thre
     return 0.1f * color;
 }
 
-#line 109 "pipeline.cpp"
+#line 110 "pipeline.cpp"
 Wide<oxrt::float3> directCall_lanes(Lanes& thread, Mask mask, Wide<uint32_t> index, const Wide<oxrt::float2>& a0, oxrt::Place place) {
     Wide<oxrt::float3> result = oxrt::spread<LANES>(oxrt::float3{});
     if (oxrt::isStackFull(*thread.thread)) {

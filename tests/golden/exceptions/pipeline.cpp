@@ -2,6 +2,7 @@
    closesthit programs: shader.py:41
    exception programs: shader.py:48
    exceptions thrown: shader.py:34
+   array bounds checks: shader.py:37
 */
 #include <oxrt/device.h>
 
@@ -61,7 +62,9 @@ void raygen_throwing(OxrtThread& thread) {
     if (thread.exceptionPending)
         return;
 #line 37 "shader.py"
-    params.codes.at(i) = oxrt::convert<int32_t>(result);
+    if (oxrt::checked(thread).contains(params.codes, i))
+#line 37 "shader.py"
+        params.codes.at(i) = oxrt::convert<int32_t>(result);
 }
 
 #line 41 "shader.py"
@@ -79,10 +82,12 @@ void closesthit_throwing(oxrt::Ray& trace, Distance& found) {
 void exception_note(OxrtThread& thread) {
     const Params& params = oxrt::launchParams<Params>(thread);
 #line 49 "shader.py"
-    params.codes.at(oxrt::getLaunchIndex(thread).x) = -oxrt::getExceptionCode(thread);
+    if (oxrt::checked(thread).contains(params.codes, oxrt::getLaunchIndex(thread).x))
+#line 49 "shader.py"
+        params.codes.at(oxrt::getLaunchIndex(thread).x) = -oxrt::getExceptionCode(thread);
 }
 
-#line 86 "pipeline.cpp"
+#line 91 "pipeline.cpp"
 void DistancePrograms::closestHit(oxrt::Ray& trace, Payload& payload, const OxrtRecordHeader& record) {
     if (record.programs[oxrt::SLOT_CLOSESTHIT] == number::closesthit_throwing)
         closesthit_throwing(trace, payload);

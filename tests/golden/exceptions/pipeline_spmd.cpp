@@ -2,6 +2,7 @@
    closesthit programs: shader.py:41
    exception programs: shader.py:48
    exceptions thrown: shader.py:34
+   array bounds checks: shader.py:37
 */
 #include <oxrt/device.h>
 
@@ -67,10 +68,12 @@ struct DistanceProgramsLanes : oxrt::NoLanePrograms {
 void exception_note(OxrtThread& thread) {
     const Params& params = oxrt::launchParams<Params>(thread);
 #line 49 "shader.py"
-    params.codes.at(oxrt::getLaunchIndex(thread).x) = -oxrt::getExceptionCode(thread);
+    if (oxrt::checked(thread).contains(params.codes, oxrt::getLaunchIndex(thread).x))
+#line 49 "shader.py"
+        params.codes.at(oxrt::getLaunchIndex(thread).x) = -oxrt::getExceptionCode(thread);
 }
 
-#line 74 "pipeline.cpp"
+#line 77 "pipeline.cpp"
 Wide<float> check_lanes([[maybe_unused]] Lanes& thread, [[maybe_unused]] Mask mask, Wide<float> t);
 
 #line 24 "shader.py"
@@ -124,7 +127,7 @@ void raygen_throwing_lanes([[maybe_unused]] Lanes& thread, [[maybe_unused]] Mask
             mask = oxrt::without(mask, thread.thrown);
             if (oxrt::any(mask)) {
 #line 37 "shader.py"
-                oxrt::store<LANES>(mask, oxrt::convert<int32_t>(result_), params.codes, i);
+                oxrt::checked(thread, mask).store(oxrt::convert<int32_t>(result_), params.codes, i);
             }
         }
     }
@@ -147,7 +150,7 @@ void closesthit_throwing_lanes([[maybe_unused]] Rays& trace, [[maybe_unused]] Ma
     mask = mask_ | oxrt::without(mask, test);
 }
 
-#line 151 "pipeline.cpp"
+#line 154 "pipeline.cpp"
 void DistanceProgramsLanes::closestHit(Rays& trace, Mask mask, Payload& payload) {
     const Wide<int32_t> program = oxrt::recordPrograms(trace.records, mask, oxrt::SLOT_CLOSESTHIT);
     if (const Mask own = mask & (program == int32_t(number::closesthit_throwing)); oxrt::any(own))

@@ -1,6 +1,7 @@
 /* Made by optixc. Compiled features:
    closesthit programs: shader.py:38
    hit objects: shader.py:30
+   array bounds checks: shader.py:34
 */
 #include <oxrt/device.h>
 #include <oxrt/device_make_hit.h>
@@ -51,7 +52,9 @@ void raygen_main(OxrtThread& thread) {
             255u, oxrt::KnownFlags<0>(), 0u, 1u, 0u, ray);
 #line 33 "shader.py"
     oxrt::makeNopHitObject(hitObject);
-    params.seen.at(i) = ray.color;
+    if (oxrt::checked(thread).contains(params.seen, i))
+#line 34 "shader.py"
+        params.seen.at(i) = ray.color;
 }
 
 #line 38 "shader.py"
@@ -59,7 +62,7 @@ void closesthit_white(Radiance& ray) {
     ray.color = oxrt::float3(1.0f);
 }
 
-#line 63 "pipeline.cpp"
+#line 66 "pipeline.cpp"
 void RadiancePrograms::closestHit(oxrt::Ray&, Payload& payload, const OxrtRecordHeader& record) {
     if (record.programs[oxrt::SLOT_CLOSESTHIT] == number::closesthit_white)
         closesthit_white(payload);

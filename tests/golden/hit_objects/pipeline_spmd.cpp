@@ -1,6 +1,7 @@
 /* Made by optixc. Compiled features:
    closesthit programs: shader.py:38
    hit objects: shader.py:30
+   array bounds checks: shader.py:34
 */
 #include <oxrt/device.h>
 #include <oxrt/device_make_hit.h>
@@ -90,7 +91,7 @@ void raygen_main_lanes([[maybe_unused]] Lanes& thread, [[maybe_unused]] Mask mas
             __builtin_inff(), 0.0f, 255u, oxrt::KnownFlags<0>(), 0u, 1u, 0u, ray);
 #line 33 "shader.py"
     oxrt::makeNopHitObject(hitObject, mask);
-    oxrt::store<LANES>(mask, ray.color, params.seen, i);
+    oxrt::checked(thread, mask).store(ray.color, params.seen, i);
 }
 
 #line 38 "shader.py"
@@ -98,7 +99,7 @@ void closesthit_white_lanes([[maybe_unused]] Lanes& thread, [[maybe_unused]] Mas
     oxrt::assign(mask, ray.color, oxrt::float3(1.0f));
 }
 
-#line 102 "pipeline.cpp"
+#line 103 "pipeline.cpp"
 void RadianceProgramsLanes::closestHit(Rays& trace, Mask mask, Payload& payload) {
     const Wide<int32_t> program = oxrt::recordPrograms(trace.records, mask, oxrt::SLOT_CLOSESTHIT);
     if (const Mask own = mask & (program == int32_t(number::closesthit_white)); oxrt::any(own))

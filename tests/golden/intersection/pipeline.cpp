@@ -1,6 +1,7 @@
 /* Made by optixc. Compiled features:
    closesthit programs: shader.py:60
    intersection programs: shader.py:48
+   array bounds checks: shader.py:44
 */
 #include <oxrt/device.h>
 
@@ -59,7 +60,9 @@ void raygen_depth(OxrtThread& thread) {
     oxrt::trace<DistancePrograms>(thread, params.scene, oxrt::float3(float(i.x), float(i.y), -10.0f), oxrt::float3(0.0f, 0.0f, 1.0f), 0.0f,
             __builtin_inff(), 0.0f, 255u, oxrt::KnownFlags<0>(), 0u, 1u, 0u, found);
 #line 44 "shader.py"
-    params.depth.at(i.x) = bool(found.back) ? -found.t : found.t;
+    if (oxrt::checked(thread).contains(params.depth, i.x))
+#line 44 "shader.py"
+        params.depth.at(i.x) = bool(found.back) ? -found.t : found.t;
 }
 
 #line 48 "shader.py"
@@ -92,7 +95,7 @@ void closesthit_sphere(oxrt::Ray& trace, Distance& found, const SpherePoint& poi
     found.back = oxrt::getHitKind(trace) == 2u || point.normal.z > 0.0f;
 }
 
-#line 96 "pipeline.cpp"
+#line 99 "pipeline.cpp"
 void DistancePrograms::closestHit(oxrt::Ray& trace, Payload& payload, const OxrtRecordHeader& record) {
     if (record.programs[oxrt::SLOT_CLOSESTHIT] == number::closesthit_sphere)
         closesthit_sphere(trace, payload, oxrt::getAttributes<SpherePoint>(trace));

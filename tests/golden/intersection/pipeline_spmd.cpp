@@ -1,6 +1,7 @@
 /* Made by optixc. Compiled features:
    closesthit programs: shader.py:60
    intersection programs: shader.py:48
+   array bounds checks: shader.py:44
 */
 #include <oxrt/device.h>
 
@@ -129,7 +130,7 @@ template <class Programs> void intersection_sphere(oxrt::Ray& trace, const Spher
     }
 }
 
-#line 133 "pipeline.cpp"
+#line 134 "pipeline.cpp"
 template <class Programs> Wide<bool> report_root_lanes([[maybe_unused]] Rays& trace, [[maybe_unused]] Mask mask, Wide<float> t,
         const oxrt::float3& center);
 
@@ -142,7 +143,7 @@ void raygen_depth_lanes([[maybe_unused]] Lanes& thread, [[maybe_unused]] Mask ma
     oxrt::trace<DistanceProgramsLanes>(thread, mask, params.scene, Wide<oxrt::float3>(oxrt::convert<float>(i.x), oxrt::convert<float>(i.y),
             -10.0f), oxrt::float3(0.0f, 0.0f, 1.0f), 0.0f, __builtin_inff(), 0.0f, 255u, oxrt::KnownFlags<0>(), 0u, 1u, 0u, found);
 #line 44 "shader.py"
-    oxrt::store<LANES>(mask, oxrt::select(Wide<bool>(found.back), -found.t, found.t), params.depth, i.x);
+    oxrt::checked(thread, mask).store(oxrt::select(Wide<bool>(found.back), -found.t, found.t), params.depth, i.x);
 }
 
 #line 34 "shader.py"
@@ -210,7 +211,7 @@ void closesthit_sphere_lanes([[maybe_unused]] Rays& trace, [[maybe_unused]] Mask
     oxrt::assign(mask, found.back, (oxrt::getHitKind(trace) == 2u) | (point.normal.z > 0.0f));
 }
 
-#line 214 "pipeline.cpp"
+#line 215 "pipeline.cpp"
 void DistancePrograms::intersection(oxrt::Ray& trace, Payload&, const OxrtRecordHeader& record) {
     if (record.programs[oxrt::SLOT_INTERSECTION] == number::intersection_sphere)
         intersection_sphere<DistancePrograms>(trace, oxrt::recordData<Sphere>(record));

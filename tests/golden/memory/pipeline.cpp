@@ -1,6 +1,7 @@
 /* Made by optixc. Compiled features:
    atomics: shader.py:41
    textures: shader.py:49
+   array bounds checks: shader.py:41
 */
 #include <oxrt/device.h>
 #include <oxrt/device_texture.h>
@@ -42,7 +43,7 @@ void raygen_store(OxrtThread& thread) {
     const Params& params = oxrt::launchParams<Params>(thread);
 #line 40 "shader.py"
     oxrt::uint3 i = oxrt::getLaunchIndex(thread);
-    uint32_t slot = oxrt::atomicAdd(params.store.count.at(0), 1u);
+    uint32_t slot = oxrt::checked(thread).contains(params.store.count, 0) ? oxrt::atomicAdd(params.store.count.at(0), 1u) : uint32_t();
     Photon photon = Photon{oxrt::float3(1.0f), oxrt::float3(0.5f), uint8_t(3u)};
     float result = next_float(photon);
 #line 43 "shader.py"
@@ -50,23 +51,35 @@ void raygen_store(OxrtThread& thread) {
 #line 43 "shader.py"
     oxrt::float2 uv = oxrt::float2(result, result_2);
     if (int32_t(slot) < int32_t(params.store.photons.shape[0])) {
-        params.store.photons.at(slot) = photon;
-        params.store.photons.at(slot).flags = uint32_t(params.store.photons.at(0).flags) + 1u;
-        params.store.photons.at(slot).power.y = 2.0f;
+        if (oxrt::checked(thread).contains(params.store.photons, slot))
+#line 45 "shader.py"
+            params.store.photons.at(slot) = photon;
+        if (oxrt::checked(thread).contains(params.store.photons, slot))
+#line 46 "shader.py"
+            params.store.photons.at(slot).flags = uint32_t(oxrt::checked(thread).load(params.store.photons, 0).flags) + 1u;
+        if (oxrt::checked(thread).contains(params.store.photons, slot))
+#line 47 "shader.py"
+            params.store.photons.at(slot).power.y = 2.0f;
     }
 #line 48 "shader.py"
-    oxrt::atomicMax(params.sums.at(slot), uv.x);
+    oxrt::checked(thread).contains(params.sums, slot) ? oxrt::atomicMax(params.sums.at(slot), uv.x) : float();
     oxrt::float4 texel = oxrt::tex2d(thread, params.image, uv.x, uv.y);
-    params.halves.at(i.y, i.x) = oxrt::convert<oxrt::half>(oxrt::float4(float(oxrt::half(texel.x)), float(oxrt::half(texel.y)),
-            float(oxrt::half(texel.z)), float(oxrt::half(texel.w))));
+    if (oxrt::checked(thread).contains(params.halves, i.y, i.x))
+#line 50 "shader.py"
+        params.halves.at(i.y, i.x) = oxrt::convert<oxrt::half>(oxrt::float4(float(oxrt::half(texel.x)), float(oxrt::half(texel.y)),
+                float(oxrt::half(texel.z)), float(oxrt::half(texel.w))));
 #line 51 "shader.py"
-    params.volume.at(i.z, i.y, i.x) = oxrt::convert<uint32_t>(texel.x);
+    if (oxrt::checked(thread).contains(params.volume, i.z, i.y, i.x))
+#line 51 "shader.py"
+        params.volume.at(i.z, i.y, i.x) = oxrt::convert<uint32_t>(texel.x);
     Photon copied = photon;
-    copied.power = oxrt::swizzle<0, 1, 2>(oxrt::convert<float>(params.halves.at(0, 0)));
-    params.store.photons.at(0) = copied;
+    copied.power = oxrt::swizzle<0, 1, 2>(oxrt::convert<float>(oxrt::checked(thread).load(params.halves, 0, 0)));
+    if (oxrt::checked(thread).contains(params.store.photons, 0))
+#line 54 "shader.py"
+        params.store.photons.at(0) = copied;
 }
 
-#line 70 "pipeline.cpp"
+#line 83 "pipeline.cpp"
 void run_raygen_store(OxrtThread* thread, const OxrtTile* tile) {
     oxrt::forEachIndex(*thread, *tile, [thread] {
         raygen_store(*thread);

@@ -1,6 +1,7 @@
 /* Made by optixc. Compiled features:
    atomics: shader.py:41
    textures: shader.py:49
+   array bounds checks: shader.py:41
 */
 #include <oxrt/device.h>
 #include <oxrt/device_texture.h>
@@ -85,8 +86,9 @@ void raygen_store_lanes([[maybe_unused]] Lanes& thread, [[maybe_unused]] Mask ma
     const Params& params = oxrt::launchParams<Params>(thread);
 #line 40 "shader.py"
     Wide<oxrt::uint3> i = oxrt::getLaunchIndex(thread);
-    Wide<uint32_t> slot = oxrt::mapActive(mask, [&]([[maybe_unused]] int lane) { return oxrt::atomicAdd(oxrt::inLane(params.store.count,
-            lane).at(oxrt::inLane(0, lane)), oxrt::inLane(1u, lane)); });
+    Wide<uint32_t> slot = oxrt::mapActive(oxrt::checked(thread, mask).inside(params.store.count, 0),
+            [&]([[maybe_unused]] int lane) { return oxrt::atomicAdd(oxrt::inLane(params.store.count, lane).at(oxrt::inLane(0, lane)),
+            oxrt::inLane(1u, lane)); });
 #line 42 "shader.py"
     Photon photon = Photon{oxrt::float3(1.0f), oxrt::float3(0.5f), uint8_t(3u)};
     float result_ = next_float(photon);
@@ -99,28 +101,33 @@ void raygen_store_lanes([[maybe_unused]] Lanes& thread, [[maybe_unused]] Mask ma
     Mask mask_ = mask & test;
 #line 44 "shader.py"
     if (oxrt::any(mask_)) {
-        oxrt::store<LANES>(mask_, oxrt::spread<16>(photon), params.store.photons, slot);
-        oxrt::eachElement<LANES>(mask_, [&, value = Wide<uint32_t>(uint32_t(params.store.photons.at(0).flags) + 1u)](auto& element,
-                int lane) { oxrt::extractLane(element.flags, value, lane); }, params.store.photons, slot);
+        oxrt::checked(thread, mask_).store(oxrt::spread<16>(photon), params.store.photons, slot);
+        oxrt::eachElement<LANES>(oxrt::checked(thread, mask_).inside(params.store.photons, slot), [&,
+                value = Wide<uint32_t>(uint32_t(oxrt::checked(thread.atLane(oxrt::anyLane(mask_))).load(params.store.photons,
+                0).flags) + 1u)](auto& element, int lane) { oxrt::extractLane(element.flags, value, lane); }, params.store.photons, slot);
 #line 47 "shader.py"
-        oxrt::eachElement<LANES>(mask_, [&, value = Wide<float>(2.0f)](auto& element, int lane) { oxrt::extractLane(element.power.y, value,
-                lane); }, params.store.photons, slot);
+        oxrt::eachElement<LANES>(oxrt::checked(thread, mask_).inside(params.store.photons, slot), [&,
+                value = Wide<float>(2.0f)](auto& element, int lane) { oxrt::extractLane(element.power.y, value, lane); },
+                params.store.photons, slot);
     }
 #line 48 "shader.py"
-    oxrt::eachLane(mask, [&]([[maybe_unused]] int lane) { oxrt::atomicMax(oxrt::inLane(params.sums, lane).at(oxrt::inLane(slot, lane)),
+    oxrt::eachLane(oxrt::checked(thread, mask).inside(params.sums, slot),
+            [&]([[maybe_unused]] int lane) { oxrt::atomicMax(oxrt::inLane(params.sums, lane).at(oxrt::inLane(slot, lane)),
             oxrt::inLane(uv.x, lane)); });
 #line 49 "shader.py"
     oxrt::float4 texel = oxrt::tex2d(*thread.thread, params.image, uv.x, uv.y);
-    oxrt::store<LANES>(mask, Wide<oxrt::float4>(oxrt::float4(float(oxrt::half(texel.x)), float(oxrt::half(texel.y)),
+    oxrt::checked(thread, mask).store(Wide<oxrt::float4>(oxrt::float4(float(oxrt::half(texel.x)), float(oxrt::half(texel.y)),
             float(oxrt::half(texel.z)), float(oxrt::half(texel.w)))), params.halves, i.y, i.x);
 #line 51 "shader.py"
-    oxrt::store<LANES>(mask, Wide<uint32_t>(oxrt::convert<uint32_t>(texel.x)), params.volume, i.z, i.y, i.x);
+    oxrt::checked(thread, mask).store(Wide<uint32_t>(oxrt::convert<uint32_t>(texel.x)), params.volume, i.z, i.y, i.x);
     Photon copied = photon;
-    copied.power = oxrt::swizzle<0, 1, 2>(oxrt::convert<float>(params.halves.at(0, 0)));
-    oxrt::store<LANES>(mask, oxrt::spread<16>(copied), params.store.photons, 0);
+    copied.power = oxrt::swizzle<0, 1, 2>(oxrt::convert<float>(oxrt::checked(thread.atLane(oxrt::anyLane(mask))).load(params.halves, 0,
+            0)));
+#line 54 "shader.py"
+    oxrt::checked(thread, mask).store(oxrt::spread<16>(copied), params.store.photons, 0);
 }
 
-#line 124 "pipeline.cpp"
+#line 131 "pipeline.cpp"
 void run_raygen_store(OxrtThread* thread, const OxrtTile* tile) {
     oxrt::runBlocks<LANES>(*thread, *tile, [](Lanes& lanes, Mask mask) {
         raygen_store_lanes(lanes, mask);

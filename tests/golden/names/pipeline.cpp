@@ -1,5 +1,6 @@
 /* Made by optixc. Compiled features:
    closesthit programs: shader.py:53
+   array bounds checks: shader.py:49
 */
 #include <oxrt/device.h>
 
@@ -39,7 +40,7 @@ int32_t gruf6udfe(int32_t uf8) {
     return uf8 + 1;
 }
 
-#line 43 "pipeline.cpp"
+#line 44 "pipeline.cpp"
 // A comment that ends in a backslash
 #line 31 "shader.py"
 int32_t namespace_(int32_t auto_, int32_t params_) {
@@ -59,7 +60,9 @@ void raygen_main(OxrtThread& thread_) {
     oxrt::trace<Programs_Programs>(thread_, params.scene, params.register_.class_, oxrt::float3(0.0f, 0.0f, 1.0f), 0.0f, __builtin_inff(),
             0.0f, 255u, oxrt::KnownFlags<0>(), 0u, 1u, 0u, new_);
 #line 49 "shader.py"
-    params.out.at(0) = new_.int32_t_ + new_.trace;
+    if (oxrt::checked(thread_).contains(params.out, 0))
+#line 49 "shader.py"
+        params.out.at(0) = new_.int32_t_ + new_.trace;
 }
 
 #line 53 "shader.py"
@@ -72,7 +75,7 @@ void closesthit_delete(oxrt::Ray& trace_, Programs_& trace) {
     trace.trace = int32_t(oxrt::getPrimitiveIndex(trace_));
 }
 
-#line 76 "pipeline.cpp"
+#line 79 "pipeline.cpp"
 void Programs_Programs::closestHit(oxrt::Ray& trace, Payload& payload, const OxrtRecordHeader& record) {
     if (record.programs[oxrt::SLOT_CLOSESTHIT] == number::closesthit_delete)
         closesthit_delete(trace, payload);

@@ -1,5 +1,6 @@
 /* Made by optixc. Compiled features:
    closesthit programs: shader.py:53
+   array bounds checks: shader.py:49
 */
 #include <oxrt/device.h>
 
@@ -85,7 +86,7 @@ int32_t gruf6udfe(int32_t uf8) {
     return uf8 + 1;
 }
 
-#line 89 "pipeline.cpp"
+#line 90 "pipeline.cpp"
 // A comment that ends in a backslash
 #line 31 "shader.py"
 int32_t namespace_(int32_t auto_, int32_t params_) {
@@ -106,7 +107,7 @@ void raygen_main_lanes([[maybe_unused]] Lanes& thread_, [[maybe_unused]] Mask ma
     oxrt::trace<Programs_ProgramsLanes>(thread_, mask, params.scene, params.register_.class_, oxrt::float3(0.0f, 0.0f, 1.0f), 0.0f,
             __builtin_inff(), 0.0f, 255u, oxrt::KnownFlags<0>(), 0u, 1u, 0u, new_);
 #line 49 "shader.py"
-    oxrt::store<LANES>(mask, new_.int32_t_ + new_.trace, params.out, 0);
+    oxrt::checked(thread_, mask).store(new_.int32_t_ + new_.trace, params.out, 0);
 }
 
 #line 53 "shader.py"
@@ -119,7 +120,7 @@ void closesthit_delete_lanes([[maybe_unused]] Rays& trace_, [[maybe_unused]] Mas
     oxrt::assign(mask, trace.trace, oxrt::convert<int32_t>(oxrt::getPrimitiveIndex(trace_)));
 }
 
-#line 123 "pipeline.cpp"
+#line 124 "pipeline.cpp"
 void Programs_ProgramsLanes::closestHit(Rays& trace, Mask mask, Payload& payload) {
     const Wide<int32_t> program = oxrt::recordPrograms(trace.records, mask, oxrt::SLOT_CLOSESTHIT);
     if (const Mask own = mask & (program == int32_t(number::closesthit_delete)); oxrt::any(own))

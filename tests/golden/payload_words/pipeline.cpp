@@ -1,6 +1,7 @@
 /* Made by optixc. Compiled features:
    miss programs: shader.py:55
    closesthit programs: shader.py:42
+   array bounds checks: shader.py:36
 */
 #include <oxrt/device.h>
 
@@ -59,8 +60,10 @@ void raygen_main(OxrtThread& thread) {
     oxrt::trace<MixedPrograms>(thread, params.scene, oxrt::float3(0.0f), oxrt::float3(0.0f, 0.0f, 1.0f), 0.0f, __builtin_inff(), 0.0f, 255u,
             oxrt::KnownFlags<0>(), 0u, 1u, 0u, mixed);
 #line 36 "shader.py"
-    params.out.at(0) = bool(mixed.hit) ? uint32_t(uint64_t(mixed.where) >> 32u) : uint32_t(uint8_t(mixed.kind));
-    PayloadWords_uint32_float32 payload = PayloadWords_uint32_float32{params.out.at(1), 0.5f};
+    if (oxrt::checked(thread).contains(params.out, 0))
+#line 36 "shader.py"
+        params.out.at(0) = bool(mixed.hit) ? uint32_t(uint64_t(mixed.where) >> 32u) : uint32_t(uint8_t(mixed.kind));
+    PayloadWords_uint32_float32 payload = PayloadWords_uint32_float32{oxrt::checked(thread).load(params.out, 1), 0.5f};
 #line 37 "shader.py"
     oxrt::trace<PayloadWords_uint32_float32Programs>(thread, params.scene, oxrt::float3(0.0f), oxrt::float3(0.0f, 0.0f, 1.0f), 0.0f,
             __builtin_inff(), 0.0f, 255u, oxrt::KnownFlags<0>(), 0u, 1u, 0u, payload);
@@ -68,7 +71,9 @@ void raygen_main(OxrtThread& thread) {
     uint32_t first = payload.w0;
 #line 37 "shader.py"
     float second = payload.w1;
-    params.out.at(2) = first + oxrt::convert<uint32_t>(second);
+    if (oxrt::checked(thread).contains(params.out, 2))
+#line 38 "shader.py"
+        params.out.at(2) = first + oxrt::convert<uint32_t>(second);
 }
 
 #line 42 "shader.py"
@@ -93,7 +98,7 @@ void miss_words(oxrt::Ray& trace) {
 void miss_nothing() {
 }
 
-#line 97 "pipeline.cpp"
+#line 102 "pipeline.cpp"
 void MixedPrograms::closestHit(oxrt::Ray& trace, Payload& payload, const OxrtRecordHeader& record) {
     switch (record.programs[oxrt::SLOT_CLOSESTHIT]) {
         case number::closesthit_mixed: closesthit_mixed(trace, payload); break;

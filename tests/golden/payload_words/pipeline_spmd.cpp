@@ -1,6 +1,7 @@
 /* Made by optixc. Compiled features:
    miss programs: shader.py:55
    closesthit programs: shader.py:42
+   array bounds checks: shader.py:36
 */
 #include <oxrt/device.h>
 
@@ -128,10 +129,11 @@ void raygen_main_lanes([[maybe_unused]] Lanes& thread, [[maybe_unused]] Mask mas
     oxrt::trace<MixedProgramsLanes>(thread, mask, params.scene, oxrt::float3(0.0f), oxrt::float3(0.0f, 0.0f, 1.0f), 0.0f, __builtin_inff(),
             0.0f, 255u, oxrt::KnownFlags<0>(), 0u, 1u, 0u, mixed);
 #line 36 "shader.py"
-    oxrt::store<LANES>(mask, oxrt::select(Wide<bool>(mixed.hit), oxrt::convert<uint32_t>(Wide<uint64_t>(mixed.where) >> 32u),
+    oxrt::checked(thread, mask).store(oxrt::select(Wide<bool>(mixed.hit), oxrt::convert<uint32_t>(Wide<uint64_t>(mixed.where) >> 32u),
             oxrt::convert<uint32_t>(Wide<uint8_t>(mixed.kind))), params.out, 0);
 #line 37 "shader.py"
-    Wide<PayloadWords_uint32_float32> payload = oxrt::spread<16>(PayloadWords_uint32_float32{params.out.at(1), 0.5f});
+    Wide<PayloadWords_uint32_float32> payload = oxrt::spread<16>(PayloadWords_uint32_float32{oxrt::checked(thread.atLane(oxrt::anyLane(mask))).load(params.out,
+            1), 0.5f});
 #line 37 "shader.py"
     oxrt::trace<PayloadWords_uint32_float32ProgramsLanes>(thread, mask, params.scene, oxrt::float3(0.0f), oxrt::float3(0.0f, 0.0f, 1.0f),
             0.0f, __builtin_inff(), 0.0f, 255u, oxrt::KnownFlags<0>(), 0u, 1u, 0u, payload);
@@ -139,7 +141,7 @@ void raygen_main_lanes([[maybe_unused]] Lanes& thread, [[maybe_unused]] Mask mas
     Wide<uint32_t> first = payload.w0;
 #line 37 "shader.py"
     Wide<float> second = payload.w1;
-    oxrt::store<LANES>(mask, first + oxrt::convert<uint32_t>(second), params.out, 2);
+    oxrt::checked(thread, mask).store(first + oxrt::convert<uint32_t>(second), params.out, 2);
 }
 
 #line 42 "shader.py"
@@ -168,7 +170,7 @@ void miss_words_lanes([[maybe_unused]] Rays& trace, [[maybe_unused]] Mask mask) 
 void miss_nothing_lanes([[maybe_unused]] Lanes& thread, [[maybe_unused]] Mask mask) {
 }
 
-#line 172 "pipeline.cpp"
+#line 174 "pipeline.cpp"
 void MixedProgramsLanes::closestHit(Rays& trace, Mask mask, Payload& payload) {
     const Wide<int32_t> program = oxrt::recordPrograms(trace.records, mask, oxrt::SLOT_CLOSESTHIT);
     if (const Mask own = mask & (program == int32_t(number::closesthit_mixed)); oxrt::any(own))

@@ -1,6 +1,7 @@
 /* Made by optixc. Compiled features:
    miss programs: shader.py:50
    closesthit programs: shader.py:42
+   array bounds checks: shader.py:38
 */
 #include <oxrt/device.h>
 
@@ -51,10 +52,12 @@ void raygen_pinhole(OxrtThread& thread) {
     oxrt::trace<RadiancePrograms>(thread, params.scene, params.eye, direction, 0.0f, 1e16f, 0.0f, 255u, oxrt::KnownFlags<0>(), 0u, 1u, 0u,
             ray);
 #line 38 "shader.py"
-    params.image.at(i.y, i.x) = oxrt::float4(ray.color, 1.0f);
+    if (oxrt::checked(thread).contains(params.image, i.y, i.x))
+#line 38 "shader.py"
+        params.image.at(i.y, i.x) = oxrt::float4(ray.color, 1.0f);
 }
 
-#line 58 "pipeline.cpp"
+#line 61 "pipeline.cpp"
 // Brighter where the surface faces the ray.
 #line 42 "shader.py"
 void closesthit_matte(oxrt::Ray& trace, Radiance& ray, const Material& material) {
@@ -75,7 +78,7 @@ void miss_sky(Radiance& ray) {
     ray.color = oxrt::float3(0.5f, 0.7f, 1.0f);
 }
 
-#line 79 "pipeline.cpp"
+#line 82 "pipeline.cpp"
 void RadiancePrograms::closestHit(oxrt::Ray& trace, Payload& payload, const OxrtRecordHeader& record) {
     if (record.programs[oxrt::SLOT_CLOSESTHIT] == number::closesthit_matte)
         closesthit_matte(trace, payload, oxrt::recordData<Material>(record));

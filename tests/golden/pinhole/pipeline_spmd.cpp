@@ -1,6 +1,7 @@
 /* Made by optixc. Compiled features:
    miss programs: shader.py:50
    closesthit programs: shader.py:42
+   array bounds checks: shader.py:38
 */
 #include <oxrt/device.h>
 
@@ -100,10 +101,10 @@ void raygen_pinhole_lanes([[maybe_unused]] Lanes& thread, [[maybe_unused]] Mask 
     oxrt::trace<RadianceProgramsLanes>(thread, mask, params.scene, params.eye, direction, 0.0f, 1e16f, 0.0f, 255u, oxrt::KnownFlags<0>(),
             0u, 1u, 0u, ray);
 #line 38 "shader.py"
-    oxrt::store<LANES>(mask, Wide<oxrt::float4>(ray.color, 1.0f), params.image, i.y, i.x);
+    oxrt::checked(thread, mask).store(Wide<oxrt::float4>(ray.color, 1.0f), params.image, i.y, i.x);
 }
 
-#line 107 "pipeline.cpp"
+#line 108 "pipeline.cpp"
 // Brighter where the surface faces the ray.
 #line 42 "shader.py"
 void closesthit_matte_lanes([[maybe_unused]] Rays& trace, [[maybe_unused]] Mask mask, Wide<Radiance>& ray, const Wide<Material>& material) {
@@ -124,7 +125,7 @@ void miss_sky_lanes([[maybe_unused]] Lanes& thread, [[maybe_unused]] Mask mask, 
     oxrt::assign(mask, ray.color, oxrt::float3(0.5f, 0.7f, 1.0f));
 }
 
-#line 128 "pipeline.cpp"
+#line 129 "pipeline.cpp"
 void RadianceProgramsLanes::closestHit(Rays& trace, Mask mask, Payload& payload) {
     const Wide<int32_t> program = oxrt::recordPrograms(trace.records, mask, oxrt::SLOT_CLOSESTHIT);
     if (const Mask own = mask & (program == int32_t(number::closesthit_matte)); oxrt::any(own))

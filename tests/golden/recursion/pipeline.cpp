@@ -3,6 +3,7 @@
    closesthit programs: shader.py:52
    recursion: shader.py:61
    occlusion queries: shader.py:39
+   array bounds checks: shader.py:48
 */
 #include <oxrt/device.h>
 
@@ -74,7 +75,9 @@ void raygen_image(OxrtThread& thread) {
     oxrt::trace<RadiancePrograms>(thread, params.scene, oxrt::float3(float(i.x), 0.0f, 0.0f), oxrt::float3(0.0f, 0.0f, 1.0f), 0.0f,
             __builtin_inff(), 0.0f, 255u, oxrt::KnownFlags<0>(), 0u, 1u, 0u, ray);
 #line 48 "shader.py"
-    params.image.at(i.x) = ray.color;
+    if (oxrt::checked(thread).contains(params.image, i.x))
+#line 48 "shader.py"
+        params.image.at(i.x) = ray.color;
 }
 
 #line 52 "shader.py"
@@ -110,7 +113,7 @@ void miss_visible(Light& light) {
     light.visible = true;
 }
 
-#line 114 "pipeline.cpp"
+#line 117 "pipeline.cpp"
 void RadiancePrograms::closestHit(oxrt::Ray& trace, Payload& payload, const OxrtRecordHeader& record) {
     switch (record.programs[oxrt::SLOT_CLOSESTHIT]) {
         case number::closesthit_matte: closesthit_matte(trace, payload); break;

@@ -3,6 +3,7 @@
    closesthit programs: shader.py:52
    recursion: shader.py:61
    occlusion queries: shader.py:39
+   array bounds checks: shader.py:48
 */
 #include <oxrt/device.h>
 
@@ -124,7 +125,7 @@ void raygen_image_lanes([[maybe_unused]] Lanes& thread, [[maybe_unused]] Mask ma
     oxrt::trace<RadianceProgramsLanes>(thread, mask, params.scene, Wide<oxrt::float3>(oxrt::convert<float>(i.x), 0.0f, 0.0f),
             oxrt::float3(0.0f, 0.0f, 1.0f), 0.0f, __builtin_inff(), 0.0f, 255u, oxrt::KnownFlags<0>(), 0u, 1u, 0u, ray);
 #line 48 "shader.py"
-    oxrt::store<LANES>(mask, ray.color, params.image, i.x);
+    oxrt::checked(thread, mask).store(ray.color, params.image, i.x);
 }
 
 #line 37 "shader.py"
@@ -171,7 +172,7 @@ void miss_visible_lanes([[maybe_unused]] Lanes& thread, [[maybe_unused]] Mask ma
     oxrt::assign(mask, light.visible, true);
 }
 
-#line 175 "pipeline.cpp"
+#line 176 "pipeline.cpp"
 void RadianceProgramsLanes::closestHit(Rays& trace, Mask mask, Payload& payload) {
     const Wide<int32_t> program = oxrt::recordPrograms(trace.records, mask, oxrt::SLOT_CLOSESTHIT);
     if (const Mask own = mask & (program == int32_t(number::closesthit_matte)); oxrt::any(own))

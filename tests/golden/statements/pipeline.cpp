@@ -1,5 +1,6 @@
 /* Made by optixc. Compiled features:
    loops that poll for cancellation: shader.py:43
+   array bounds checks: shader.py:77
 */
 #include <oxrt/device.h>
 
@@ -120,10 +121,12 @@ void raygen_main(OxrtThread& thread) {
         total = total + oxrt::convert<int32_t>(pair.x);
     }
 #line 77 "shader.py"
-    params.numbers.at(i) = total;
+    if (oxrt::checked(thread).contains(params.numbers, i))
+#line 77 "shader.py"
+        params.numbers.at(i) = total;
 }
 
-#line 127 "pipeline.cpp"
+#line 130 "pipeline.cpp"
 void run_raygen_main(OxrtThread* thread, const OxrtTile* tile) {
     oxrt::forEachIndex(*thread, *tile, [thread] {
         raygen_main(*thread);

@@ -1,5 +1,6 @@
 /* Made by optixc. Compiled features:
    loops that poll for cancellation: shader.py:43
+   array bounds checks: shader.py:77
 */
 #include <oxrt/device.h>
 
@@ -52,7 +53,7 @@ Wide<int32_t> factorial_lanes([[maybe_unused]] Lanes& thread, [[maybe_unused]] M
     return n * result_;
 }
 
-#line 56 "pipeline.cpp"
+#line 57 "pipeline.cpp"
 // Turns until 1; the loop has no provable bound.
 #line 18 "shader.py"
 Wide<int32_t> collatz_lanes([[maybe_unused]] Lanes& thread, [[maybe_unused]] Mask mask, Wide<int32_t> n) {
@@ -220,11 +221,11 @@ void raygen_main_lanes([[maybe_unused]] Lanes& thread, [[maybe_unused]] Mask mas
             }
         }
 #line 77 "shader.py"
-        oxrt::store<LANES>(mask, total, params.numbers, i);
+        oxrt::checked(thread, mask).store(total, params.numbers, i);
     }
 }
 
-#line 228 "pipeline.cpp"
+#line 229 "pipeline.cpp"
 void run_raygen_main(OxrtThread* thread, const OxrtTile* tile) {
     oxrt::runBlocks<LANES>(*thread, *tile, [](Lanes& lanes, Mask mask) {
         raygen_main_lanes(lanes, mask);
