@@ -178,13 +178,7 @@ class DeviceContext(Context):
         percent; an index out of range then reads and writes other memory.
         """
         _ = self.handle
-        if isinstance(groups, ProgramGroup) or not isinstance(groups, Sequence) or not groups:
-            raise InvalidValueError("pipeline_create takes a list of program groups, at least one")
-        for group in groups:
-            if not isinstance(group, ProgramGroup):
-                raise InvalidValueError(f"pipeline_create takes program groups, not {type(group).__name__}")
-        if not any(group.kind is ProgramGroupKind.RAYGEN for group in groups):
-            raise InvalidValueError("a pipeline needs a raygen group: nothing else can begin a launch")
+        _check_groups(groups)
         if options is not None and not isinstance(options, PipelineCompileOptions):
             raise InvalidValueError(f"options takes an ox.PipelineCompileOptions, not {type(options).__name__}")
         used = list(dict.fromkeys(program for group in groups for program in group.programs.values()))
@@ -279,6 +273,16 @@ class DeviceContext(Context):
         Without `output` it is a new array of bytes. The strides, in bytes, lie between networks and are ignored for one network.
         """
         return coop_vec.convert(input_network, input, output_network, output, num_networks, input_stride, output_stride)
+
+
+def _check_groups(groups: Any) -> None:
+    if isinstance(groups, ProgramGroup) or not isinstance(groups, Sequence) or not groups:
+        raise InvalidValueError("pipeline_create takes a list of program groups, at least one")
+    for group in groups:
+        if not isinstance(group, ProgramGroup):
+            raise InvalidValueError(f"pipeline_create takes program groups, not {type(group).__name__}")
+    if not any(group.kind is ProgramGroupKind.RAYGEN for group in groups):
+        raise InvalidValueError("a pipeline needs a raygen group: nothing else can begin a launch")
 
 
 def _folder(path: Any, what: str) -> Path:
