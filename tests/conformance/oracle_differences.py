@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import math
 from collections import Counter
+from dataclasses import replace
 from itertools import pairwise
 from typing import Any
 
@@ -61,6 +62,7 @@ def compare(probe: Probe, index: int, result: RayResult) -> tuple[set[str], list
     """The named differences that explain our result for a ray, and what stays unexplained."""
     recorded = probe.rays[index]
     given = recorded["in"]
+    result = _numbered(result, index, recorded["p"][0])
     events = result.events
     trimmed = recorded["nev"] > len(recorded["events"])
     if trimmed:  # the files left out one kind of event
@@ -75,6 +77,18 @@ def compare(probe: Probe, index: int, result: RayResult) -> tuple[set[str], list
     if unexplained and (name := curve_difference(probe, given, events, recorded["events"])):
         return {name}, []
     return names, unexplained
+
+
+def _numbered(result: RayResult, index: int, number: int) -> RayResult:
+    """Our result with the number that the ray had when it was recorded, which stands in payload word 0: others may have been left out."""
+    if number == index:
+        return result
+
+    def renumber(words: list[int]) -> list[int]:
+        return [number, *words[1:]] if words[0] == index else words
+
+    events = [{**event, "p": renumber(event["p"])} if "p" in event else event for event in result.events]
+    return replace(result, payload=renumber(result.payload), events=events)
 
 
 def _of_payload(result: RayResult, recorded: dict[str, Any], trimmed: bool) -> tuple[set[str], list[str]]:
