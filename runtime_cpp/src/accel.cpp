@@ -106,7 +106,6 @@ void Accel::share(std::shared_ptr<const Accel> original)
 {
     view = original->view;
     bounds = original->bounds;
-    depth = original->depth;
     source = std::move(original);
     view.handle = context->traversables.add(&view);
 }
@@ -219,7 +218,7 @@ void Accel::describe()
     view.instances = instances ? instances->data() : nullptr;
     view.instanceTraversables = instances ? instances->traversables() : nullptr;
     view.hasNativeInstances = instances && instances->isNative();
-    depth = instances ? instances->graphDepth() + 1 : 1;
+    view.graphDepth = instances ? instances->graphDepth() + 1 : 1;
     view.instanceCount = instances ? instances->size() : 0;
 }
 

@@ -80,6 +80,11 @@ void traceInterpreted(InterpretedThread& owner, const OxrtRayArguments& argument
         owner.usesTime ? traceAs<Moving>(owner, arguments, payload) : traceAs<Static>(owner, arguments, payload);
 }
 
+bool isTooDeepInterpreted(const InterpretedThread& owner, uint64_t handle)
+{
+    return isTooDeep(owner.thread, findTraversable(*owner.thread.launch, handle));
+}
+
 void* newHitObject(InterpretedThread& owner)
 {
     return new HitObject(owner.thread);

@@ -98,6 +98,11 @@ void oxrtInterpreterInvoke(OxrtInterpreter interpreter, void* object, uint32_t* 
     invokeInterpreted(interpreter->owner, object, payload);
 }
 
+int oxrtInterpreterIsTooDeep(OxrtInterpreter interpreter, uint64_t handle)
+{
+    return isTooDeepInterpreted(interpreter->owner, handle);
+}
+
 void oxrtInterpreterThrow(OxrtInterpreter interpreter, int32_t code, const uint32_t* details, unsigned count)
 {
     OxrtThread& thread = interpreter->owner.thread;

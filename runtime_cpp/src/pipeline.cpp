@@ -126,6 +126,7 @@ OxrtLaunch Pipeline::describeLaunch(const OxrtShaderBindingTable& sbt, LaunchSiz
     description.callableStride = sbt.callableStride;
     description.callableCount = sbt.callableCount;
     description.maxTraceDepth = stackTraceDepth;
+    description.maxGraphDepth = stackGraphDepth;
     return description;
 }
 
@@ -253,10 +254,11 @@ OxrtLaunchReport Pipeline::lastReport() const
     return failedReport;
 }
 
-void Pipeline::setStackTraceDepth(std::uint32_t depth)
+void Pipeline::setStackDepths(std::uint32_t traces, std::uint32_t graph)
 {
     const std::lock_guard lock(mutex);
-    stackTraceDepth = depth;
+    stackTraceDepth = traces;
+    stackGraphDepth = graph;
 }
 
 void Pipeline::progress(std::uint64_t& done, std::uint64_t& total) const
@@ -296,9 +298,9 @@ OxrtResult oxrtPipelineGetInfo(OxrtPipeline pipeline, OxrtPipelineInfo* info)
     });
 }
 
-OxrtResult oxrtPipelineSetStackTraceDepth(OxrtPipeline pipeline, uint32_t depth)
+OxrtResult oxrtPipelineSetStackDepths(OxrtPipeline pipeline, uint32_t traceDepth, uint32_t graphDepth)
 {
-    return guard([&] { find(pipeline)->setStackTraceDepth(depth); });
+    return guard([&] { find(pipeline)->setStackDepths(traceDepth, graphDepth); });
 }
 
 OxrtResult oxrtPipelineFindProgram(OxrtPipeline pipeline, const char* name, int32_t* program)

@@ -45,7 +45,7 @@ public:
     std::unique_ptr<Launch> makeLaunch(const void* params, std::size_t paramsSize, const OxrtShaderBindingTable* sbt, LaunchSize size) const;
 
     OxrtLaunchReport lastReport() const;
-    void setStackTraceDepth(std::uint32_t depth);
+    void setStackDepths(std::uint32_t traces, std::uint32_t graph);
     void progress(std::uint64_t& done, std::uint64_t& total) const;
 
     const std::shared_ptr<Context> context;
@@ -81,6 +81,7 @@ private:
     bool begun = false;       // it waits for oxrtLaunchWait
     OxrtLaunchReport failedReport = {};
     std::uint32_t stackTraceDepth = UINT32_MAX; // traces that may nest on the configured stack
+    std::uint32_t stackGraphDepth = UINT32_MAX; // traversables that may lie one below the other
 };
 
 // Checks bases, strides and counts, and in validation mode every header. Throws Failure naming the record.

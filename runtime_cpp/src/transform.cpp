@@ -97,7 +97,7 @@ Transform::Transform(std::shared_ptr<Context> owner, const OxrtTransformOptions&
         usable = invert(matrix, inverse);
         std::copy_n(inverse, matrixFloats, keys.data() + matrixFloats);
     }
-    depth = child->graphDepth() + 1;
+    view.graphDepth = child->graphDepth() + 1;
     view.type = viewType(options.type);
     view.needs = child->traversable().needs | OXRT_SCENE_MULTI_LEVEL | (isStatic ? 0u : std::uint32_t(OXRT_SCENE_HAS_MOTION));
     view.child = &child->traversable();

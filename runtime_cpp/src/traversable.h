@@ -18,7 +18,7 @@ public:
     const OxrtTraversableView& traversable() const { return view; }
     std::uint64_t handle() const { return view.handle; }
     // How many traversables the longest way down holds, this one included.
-    unsigned graphDepth() const { return depth; }
+    unsigned graphDepth() const { return view.graphDepth; }
     // A box around everything below at all times from `begin` to `end`, which may be infinite. Vanishing is not looked at.
     virtual RTCBounds boundsDuring(float begin, float end) const = 0;
 
@@ -26,7 +26,6 @@ protected:
     Traversable() = default;
 
     OxrtTraversableView view = {};
-    unsigned depth = 1;
 };
 
 constexpr unsigned maxGraphDepth = 31;

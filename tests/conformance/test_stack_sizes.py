@@ -14,6 +14,7 @@ import optixc as ox
 
 CORNERS = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0]], np.float32)
 OVERFLOW, TRACE_DEPTH = ox.ExceptionFlags.STACK_OVERFLOW, ox.ExceptionFlags.TRACE_DEPTH
+INTERPRETED = 0
 MODES = [1, 8, 16]
 
 
@@ -21,16 +22,17 @@ class Nesting:
     """One kind of nesting in a context of its own."""
 
     def __init__(self, kind: str, simd: int, flags: int = 0, depth: int = 31, **context: Any) -> None:
+        self.is_interpreted = simd == INTERPRETED
         self.context = ox.DeviceContext(**context)
         module, create = self.context.module_create(SHADERS / "nesting.py"), self.context.program_group_create
         self.raygen = create(raygen=module[f"__raygen__{kind}"])
         self.hit = create(closesthit=module["__closesthit__again"])
         self.exception = create(exception=module["__exception__note"])
         slot = f"{kind}_callable"
-        self.callables = [] if kind == "traces" else [create(**{slot: module[f"__{slot}__down"]})]
-        options = ox.PipelineCompileOptions(exception_flags=flags)
+        self.callables = [] if kind in ("traces", "traverses") else [create(**{slot: module[f"__{slot}__down"]})]
+        options = ox.PipelineCompileOptions(exception_flags=flags, uses_motion_blur=kind != "direct")
         self.pipeline = self.context.pipeline_create([self.raygen, self.hit, self.exception, *self.callables], max_trace_depth=depth,
-                                                     simd=simd, options=options)
+                                                     simd=max(simd, 1), options=options)
         self.scene = self.context.accel_build([ox.BuildInputTriangles(CORNERS)])
 
     def run(self, depths: list[int]) -> tuple[list[int], list[int]]:
@@ -39,7 +41,11 @@ class Nesting:
         params = shader.Params(scene=self.scene, out=out, codes=codes, depth=np.array(depths, np.uint32))
         table = ox.ShaderBindingTable(raygen=self.raygen.record(), hitgroup=[self.hit.record()], exception=self.exception.record(),
                                       callables=[group.record() for group in self.callables])
-        self.pipeline.launch(params, table, len(depths))
+        if self.is_interpreted:
+            for index in range(len(depths)):
+                ox.interpret(self.pipeline, params, table, len(depths), index)
+        else:
+            self.pipeline.launch(params, table, len(depths))
         return out.tolist(), codes.tolist()
 
 
@@ -185,3 +191,55 @@ def test_T079_depths_of_the_graph() -> None:
     context.pipeline_create([group], options=single).set_stack_size(0, 0, 1000, 2)
     with pytest.raises(ox.InvalidValueError, match="single level only"):
         context.pipeline_create([group], options=single).set_stack_size(0, 0, 1000, 3)
+
+
+def chain(context: ox.DeviceContext, kind: str) -> tuple[Any, int]:
+    """A scene and how many traversables lie one below the other in it."""
+    gas = context.accel_build([ox.BuildInputTriangles(CORNERS)])
+    place = np.eye(4, dtype=np.float32)[:3]
+    match kind:
+        case "gas":
+            return gas, 1
+        case "ias":
+            return context.accel_build([ox.BuildInputInstances([ox.Instance(gas)])]), 2
+        case "moving ias":
+            motion = ox.MotionOptions(num_keys=2)
+            return context.accel_build([ox.BuildInputInstances([ox.Instance(gas)])], motion_options=motion), 2
+        case "transform":
+            moving = context.matrix_motion_transform(gas, [place, place], ox.MotionOptions(num_keys=2))
+            return context.accel_build([ox.BuildInputInstances([ox.Instance(moving)])]), 3
+        case _:
+            scene = gas
+            for _ in range(30):
+                scene = context.accel_build([ox.BuildInputInstances([ox.Instance(scene)])])
+            return scene, 31
+
+
+@pytest.mark.parametrize("program", ["traces", "traverses"])
+@pytest.mark.parametrize("simd", [*MODES, INTERPRETED])
+def test_T079_a_graph_deeper_than_configured_is_an_exception(simd: int, program: str) -> None:
+    nesting = Nesting(program, simd, flags=TRACE_DEPTH, depth=1)
+    depths = [index % 2 for index in range(40)]
+    for kind in ("gas", "ias", "moving ias", "transform", "longest"):
+        nesting.scene, needed = chain(nesting.context, kind)
+        for allowed in {1, 2, 3, 31, needed}:
+            nesting.pipeline.set_stack_size(0, 0, 1 << 20, allowed)
+            reached, codes = nesting.run(depths)
+            assert codes == [-2 if depth and allowed < needed else 0 for depth in depths]
+            assert reached == [999 if code else depth for depth, code in zip(depths, codes, strict=True)]
+
+
+@pytest.mark.parametrize("simd", MODES)
+def test_graph_depths_without_the_flag(simd: int) -> None:
+    """Without it nothing is looked at, except in validation, where the launch fails."""
+    for validation in (False, True):
+        nesting = Nesting("traces", simd, depth=1, validation=validation)
+        nesting.scene, _ = chain(nesting.context, "ias")
+        assert nesting.run([1, 0, 1]) == ([1, 0, 1], [0, 0, 0])
+        nesting.pipeline.set_stack_size(0, 0, 1 << 20, 1)
+        if validation:
+            with pytest.raises(ox.ValidationFailureError, match=r"nesting\.py:\d+: .*deeper than max_traversable_graph_depth") as caught:
+                nesting.run([1, 0, 1])
+            assert caught.value.fault_code == -3
+        else:
+            assert nesting.run([1, 0, 1]) == ([1, 0, 1], [0, 0, 0])

@@ -191,6 +191,9 @@ class Pipeline:
 
         In a pipeline with ExceptionFlags.STACK_OVERFLOW, traces that nest deeper than `continuation_stack_size` is enough for, by the
         formula of `util_compute_stack_sizes`, are stack overflows. Sizes of direct callables are checked and have no effect.
+
+        In a pipeline with ExceptionFlags.TRACE_DEPTH, and in validation, no ray may be traced against a graph of more traversables one
+        below the other than `max_traversable_graph_depth`, wherever the ray would go in it.
         """
         named = {
             "direct_callable_stack_size_from_traversal": direct_callable_stack_size_from_traversal,
@@ -209,7 +212,8 @@ class Pipeline:
             total.include(group.get_stack_size(self))
         if self._pipeline is None:
             self._refuse_dead()
-        library.check(self._lib.oxrtPipelineSetStackTraceDepth(self._pipeline, nesting_that_fits(total, continuation_stack_size)))
+        traces = nesting_that_fits(total, continuation_stack_size)
+        library.check(self._lib.oxrtPipelineSetStackDepths(self._pipeline, traces, max_traversable_graph_depth))
 
     def check_record(self, record: Record) -> None:
         """Raises unless the record's data is what its programs in this pipeline read, with the arrays that they use."""

@@ -172,7 +172,8 @@ class Machine:
             return
         if name != "traverse" and len(self._payload_types) >= self._max_trace_depth:
             self._too_deep()
-            return
+        if self._flags & FLAG_TRACE_DEPTH and ray and self._lib.oxrtInterpreterIsTooDeep(self._interpreter, ray[0]):
+            self._throw(TRACE_DEPTH_CODE, [])
         frame = self._frames[-1]
         self._payload_types.append(type_)
         outer, self._words = getattr(self, "_words", None), words

@@ -23,6 +23,7 @@ struct NoPrograms {
     static constexpr bool countsDepth = false;  /* traces may nest deeper than maxTraceDepth */
     static constexpr bool depthThrows = false;  /* ... which is an exception rather than a fault */
     static constexpr uint32_t maxTraceDepth = 0;
+    static constexpr bool graphDepthThrows = false; /* a graph that is too deep is an exception */
     static constexpr bool checksStack = false;    /* nested traces may use up the stack */
     static constexpr bool overflowThrows = false; /* ... which is an exception rather than a fault */
     static constexpr bool usesTime = false;

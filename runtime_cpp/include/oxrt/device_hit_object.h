@@ -36,7 +36,8 @@ OXRT_INLINE void traverse(OxrtThread& thread, HitObject& object, uint64_t handle
                           float tmax, float time, uint32_t mask, Flags flags, uint32_t sbtOffset, uint32_t sbtStride, uint32_t missIndex,
                           typename Programs::Payload& payload, Place place = Place::current()) {
     Ray& ray = object.ray;
-    setRay<Programs>(ray, thread, handle, origin, direction, tmin, tmax, time, mask, flags, sbtOffset, sbtStride, missIndex, payload, place);
+    if (!setRay<Programs>(ray, thread, handle, origin, direction, tmin, tmax, time, mask, flags, sbtOffset, sbtStride, missIndex, payload, place))
+        return;
     object.kind = HitObject::Kind::Miss;
     object.recordIndex = missIndex;
     if (canHit(ray) && findClosest<Programs, Flags>(ray, object.path)) {

@@ -87,6 +87,11 @@ template <class Programs> OXRT_INLINE bool isGraphAllowed(const OxrtTraversableV
 }
 
 /* What validation has to say about a ray and what it is to be traced through. */
+/* Whether more traversables lie one below the other than the stack was configured for. */
+OXRT_INLINE bool isTooDeep(const OxrtThread& thread, const OxrtTraversableView* root) {
+    return root && root->graphDepth > thread.launch->maxGraphDepth;
+}
+
 template <class Programs> __attribute__((noinline)) void checkRay(const Ray& ray, uint64_t handle, Place place) {
     OxrtThread& thread = *ray.thread;
     if (!isValidRay(ray))
@@ -97,6 +102,8 @@ template <class Programs> __attribute__((noinline)) void checkRay(const Ray& ray
     else if (ray.root && !isGraphAllowed<Programs>(*ray.root))
         fault(thread, ray.root->type == OXRT_TRAVERSABLE_GAS ? OXRT_FAULT_SINGLE_LEVEL_GAS : OXRT_FAULT_INVALID_TRAVERSABLE,
               "the traversable is of a kind that the pipeline's traversable_graph_flags leave out", place);
+    else if (!Programs::graphDepthThrows && isTooDeep(thread, ray.root))
+        fault(thread, OXRT_FAULT_TRAVERSAL_DEPTH, "the graph is deeper than max_traversable_graph_depth of set_stack_size()", place);
     else if (ray.root && (ray.root->needs & Programs::excludedNeeds))
         fault(thread, OXRT_FAULT_PRIMITIVE_TYPE, "the scene holds primitives that the pipeline's uses_primitive_type_flags leave out", place);
 }
@@ -179,9 +186,9 @@ template <class Programs> OXRT_INLINE void leaveTrace(OxrtThread& thread) {
         --thread.traceDepth;
 }
 
-/* Enters what the caller of a trace gave. */
+/* Enters what the caller of a trace gave; false if that was an exception. */
 template <class Programs>
-OXRT_INLINE void setRay(Ray& ray, OxrtThread& thread, uint64_t handle, const float3& origin, const float3& direction, float tmin, float tmax,
+OXRT_INLINE bool setRay(Ray& ray, OxrtThread& thread, uint64_t handle, const float3& origin, const float3& direction, float tmin, float tmax,
                         float time, uint32_t mask, uint32_t flags, uint32_t sbtOffset, uint32_t sbtStride, uint32_t missIndex,
                         typename Programs::Payload& payload, Place place) {
     ray.thread = &thread;
@@ -202,6 +209,13 @@ OXRT_INLINE void setRay(Ray& ray, OxrtThread& thread, uint64_t handle, const flo
         placeOfTrace() = place;
         checkRay<Programs>(ray, handle, place);
     }
+    if constexpr (Programs::graphDepthThrows)
+        if (__builtin_expect(isTooDeep(thread, ray.root), 0)) {
+            ray.root = nullptr;
+            throwException(thread, nullptr, OXRT_FAULT_TRACE_DEPTH);
+            return false;
+        }
+    return true;
 }
 
 template <class Programs, class Flags>
@@ -211,8 +225,8 @@ OXRT_INLINE void trace(OxrtThread& thread, uint64_t handle, const float3& origin
     if (!enterTrace<Programs>(thread, place))
         return;
     Ray ray;
-    setRay<Programs>(ray, thread, handle, origin, direction, tmin, tmax, time, mask, flags, sbtOffset, sbtStride, missIndex, payload, place);
-    traceNow<Programs, Flags>(ray, payload, place);
+    if (setRay<Programs>(ray, thread, handle, origin, direction, tmin, tmax, time, mask, flags, sbtOffset, sbtStride, missIndex, payload, place))
+        traceNow<Programs, Flags>(ray, payload, place);
     leaveTrace<Programs>(thread);
 }
 

@@ -46,6 +46,9 @@ OXRT_API void oxrtInterpreterFreeHitObject(OxrtInterpreter interpreter, void* ob
 OXRT_API void oxrtInterpreterTraverse(OxrtInterpreter interpreter, void* object, const OxrtRayArguments* arguments, uint32_t* payload);
 OXRT_API void oxrtInterpreterInvoke(OxrtInterpreter interpreter, void* object, uint32_t* payload);
 
+/* 1 if the handle leads to a graph that is deeper than the pipeline's configured stack has room for. */
+OXRT_API int oxrtInterpreterIsTooDeep(OxrtInterpreter interpreter, uint64_t handle);
+
 /* Within an intersection program: 0 rejected, 1 accepted, 2 accepted and the program ends. At most 8 attribute words. */
 OXRT_API int oxrtInterpreterReport(void* ray, float t, uint32_t kind, const uint32_t* attributes, unsigned count);
 /* Within an any-hit program, which ends with it: drops the candidate, or accepts it and ends the traversal. */

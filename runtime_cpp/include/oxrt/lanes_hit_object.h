@@ -127,8 +127,9 @@ OXRT_INLINE void traverse(LanesThread<W>& thread, Lanes<bool, W> mask, HitObject
         return;
     typename Packet<W>::RayHit packet;
     RayLanes<W> ray(packet);
-    setRays<Programs>(ray, thread, mask, handle, origin, direction, tmin, tmax, time, visibility, flags, sbtOffset, sbtStride, missIndex, payload,
-                      place);
+    if (!setRays<Programs>(ray, thread, mask, handle, origin, direction, tmin, tmax, time, visibility, flags, sbtOffset, sbtStride, missIndex,
+                           payload, place))
+        return;
     GraphPath paths[W];
     if (ray.root && __builtin_expect(isGraph(*ray.root), 0))
         ray.paths = paths;

@@ -87,9 +87,9 @@ template <class Programs, int W> OXRT_INLINE void setPayloadWords(RayLanes<W>& r
     }
 }
 
-/* Enters what the caller of a trace gave. The handle and the flags are the same for all lanes. */
+/* Enters what the caller of a trace gave; false if that was an exception of all lanes. The handle and the flags are the same for them. */
 template <class Programs, int W>
-OXRT_INLINE void setRays(RayLanes<W>& ray, LanesThread<W>& thread, Lanes<bool, W> mask, uint64_t handle, const Wide<float3, W>& origin,
+OXRT_INLINE bool setRays(RayLanes<W>& ray, LanesThread<W>& thread, Lanes<bool, W> mask, uint64_t handle, const Wide<float3, W>& origin,
                          const Wide<float3, W>& direction, Wide<float, W> tmin, Wide<float, W> tmax, Wide<float, W> time,
                          Wide<uint32_t, W> visibility, uint32_t flags, Wide<uint32_t, W> sbtOffset, Wide<uint32_t, W> sbtStride,
                          Wide<uint32_t, W> missIndex, typename Programs::Payload& payload, Place place) {
@@ -119,6 +119,14 @@ OXRT_INLINE void setRays(RayLanes<W>& ray, LanesThread<W>& thread, Lanes<bool, W
         placeOfTrace() = place;
         checkRays<Scalar>(ray, mask, handle, place);
     }
+    if constexpr (Scalar::graphDepthThrows)
+        if (__builtin_expect(isTooDeep(*thread.thread, ray.root), 0)) {
+            ray.root = nullptr;
+            throwException(thread.atLane(firstLane(mask)), nullptr, OXRT_FAULT_TRACE_DEPTH);
+            takeExceptions(thread, mask);
+            return false;
+        }
+    return true;
 }
 
 /* Whether the rays go to Embree together. */
@@ -147,13 +155,14 @@ OXRT_INLINE void trace(LanesThread<W>& thread, Lanes<bool, W> mask, uint64_t han
     }
     typename Packet<W>::RayHit rays;
     RayLanes<W> ray(rays);
-    setRays<Programs>(ray, thread, mask, handle, origin, direction, tmin, tmax, time, visibility, flags, sbtOffset, sbtStride, missIndex, payload,
-                      place);
     GraphPath paths[W];
-    if (ray.root && __builtin_expect(isGraph(*ray.root), 0))
-        ray.paths = paths;
-    const Bundle bundle = bundleFor<Programs, endsAnywhere<Programs, Flags>>(ray, mask, origin, direction, tmax);
-    traceNow<Programs, Flags>(ray, mask, payload, bundle, place);
+    if (setRays<Programs>(ray, thread, mask, handle, origin, direction, tmin, tmax, time, visibility, flags, sbtOffset, sbtStride, missIndex,
+                          payload, place)) {
+        if (ray.root && __builtin_expect(isGraph(*ray.root), 0))
+            ray.paths = paths;
+        const Bundle bundle = bundleFor<Programs, endsAnywhere<Programs, Flags>>(ray, mask, origin, direction, tmax);
+        traceNow<Programs, Flags>(ray, mask, payload, bundle, place);
+    }
     leaveTrace<Scalar>(*thread.thread);
 }
 

@@ -265,8 +265,9 @@ typedef struct OxrtPipelineInfo {
 } OxrtPipelineInfo;
 
 OXRT_API OxrtResult oxrtPipelineGetInfo(OxrtPipeline pipeline, OxrtPipelineInfo* info);
-/* How many traces may nest on the stack that is configured; deeper ones are stack overflows in pipelines compiled to notice them. */
-OXRT_API OxrtResult oxrtPipelineSetStackTraceDepth(OxrtPipeline pipeline, uint32_t depth);
+/* How many traces may nest on the stack that is configured, and how many traversables may lie one below the other in what they trace
+   against; more are stack overflows and trace depth exceptions in pipelines compiled to notice them. */
+OXRT_API OxrtResult oxrtPipelineSetStackDepths(OxrtPipeline pipeline, uint32_t traceDepth, uint32_t graphDepth);
 /* The number of the program with this full name, -1 if there is none. */
 OXRT_API OxrtResult oxrtPipelineFindProgram(OxrtPipeline pipeline, const char* name, int32_t* program);
 

@@ -13,7 +13,7 @@
 extern "C" {
 #endif
 
-enum { OXRT_PIPELINE_ABI = 4 };
+enum { OXRT_PIPELINE_ABI = 5 };
 
 /* ---- SBT records -------------------------------------------------------------------------------------------------------------- */
 
@@ -118,6 +118,8 @@ typedef struct OxrtTraversableView {
     const struct OxrtTraversableView* instanceTraversables; /* IAS: what the handle of each instance leads to */
     uint32_t hasNativeInstances; /* IAS: `scene` holds Embree's instances, else one user geometry with a primitive for each instance */
     uint32_t buildFlags;
+    uint32_t graphDepth; /* traversables on the longest way down, this one included */
+    uint32_t reserved;
 } OxrtTraversableView;
 
 /* handle = generation << 32 | slot; a handle whose generation is not the slot's is stale. Generation 0 is never used. */
@@ -201,6 +203,8 @@ typedef struct OxrtLaunch {
     uint32_t* cancel; /* non-zero: stop soon; read relaxed, polled by loops without a provable bound and between blocks */
     uint32_t maxTraceDepth; /* traces that may nest on the configured stack; the pipeline's own limit is compiled in */
     uint32_t validation;
+    uint32_t maxGraphDepth; /* traces into deeper graphs are exceptions in pipelines compiled to notice them */
+    uint32_t reserved;
     uint32_t* exceptionsTold; /* exceptions without a program so far; the first five are printed */
 } OxrtLaunch;
 

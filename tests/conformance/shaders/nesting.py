@@ -36,6 +36,16 @@ def __raygen__traces():
 
 
 @ox.program
+def __raygen__traverses():
+    i = ox.get_launch_index().x
+    level = Level(uint32(1), 0)
+    if params.depth[i] > 0:
+        ox.traverse(params.scene, float3(0.25, 0.25, 1.0), float3(0.0, 0.0, -1.0), payload=level)
+        ox.invoke(payload=level)
+    params.out[i] = level.reached
+
+
+@ox.program
 def __closesthit__again(level: Level):
     inner = Level(level.left - 1, 0)
     if inner.left > 0:
