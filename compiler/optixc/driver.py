@@ -22,7 +22,7 @@ from optixc import passes, toolchain
 from optixc.cache import Cache
 from optixc.codegen.cpp_types import payload_words
 from optixc.codegen.emit import emit as emit_cpp
-from optixc.codegen.program_classes import constant, payload_of, traces_of
+from optixc.codegen.program_classes import constant, payload_of, trace_depth, traces_of
 from optixc.codegen.word_limits import first_excess
 from optixc.errors import (
     FileIoError,
@@ -181,6 +181,7 @@ def _build(
     report = _describe(emitted, options, compiler)
     report["bound_values"] = _describe_bound([unit.result.module for unit in units], emitted.pipeline.params, emitted.pipeline.options)
     programs = [_describe_program(program) for program in emitted.pipeline.programs]
+    report["frame_bytes"] = sum(entry.manifest.get("frames", {}).values())
     report["stack"] = frames_of_programs(entry.manifest.get("frames", {}), [program.name for program in emitted.pipeline.programs])
     if known is not None:
         store.write_note(known, {"entry": key, "params": params, "report": report, "programs": programs})
@@ -333,6 +334,7 @@ def _describe(emitted: Emitted, options: CompileOptions, compiler: toolchain.Com
         "functions": [_describe_place(function) for function in (*emitted.pipeline.programs, *emitted.pipeline.helpers)],
         "traces": [str(use) for use in map(_trace_text, uses)],
         "trace_uses": uses,
+        "trace_nesting": trace_depth(emitted.pipeline),
         "calls_callables": bool(signatures_called(emitted.pipeline)),
         "is_any_graph": int(options.pipeline.traversable_graph_flags) == 0,
         "ignored": [name for name in _WITHOUT_MEANING if getattr(options.pipeline, name)],

@@ -24,13 +24,13 @@ constexpr std::uint32_t smallestTile = 256;
 constexpr std::uint64_t wantedTilesPerThread = 8;
 constexpr std::uint64_t largestChunk = 16;
 
-// Left for Embree's traversal, its callbacks and the programs that run below the last trace.
-constexpr std::size_t stackReserve = std::size_t(512) << 10;
+// Left for Embree's traversals of a graph of many levels and for its callbacks, on stacks that are large enough for it.
+constexpr std::size_t stackReserve = std::size_t(2) << 20;
 
-// The lowest address that a frame of this thread may have; the first call of a thread asks the system.
-const void* findStackLimit()
+// The lowest address of this thread's stack that is no reserve; the first call of a thread asks the system. NULL if that does not know.
+const char* findStackLimit()
 {
-    thread_local const void* limit = nullptr;
+    thread_local const char* limit = nullptr;
     if (limit) return limit;
     pthread_attr_t attributes;
     if (pthread_getattr_np(pthread_self(), &attributes) != 0) return nullptr;
@@ -38,7 +38,7 @@ const void* findStackLimit()
     std::size_t size = 0;
     pthread_attr_getstack(&attributes, &lowest, &size);
     pthread_attr_destroy(&attributes);
-    limit = static_cast<const char*>(lowest) + std::min(stackReserve, size / 2);
+    limit = static_cast<const char*>(lowest) + std::min(stackReserve, size / 4);
     return limit;
 }
 
@@ -59,8 +59,9 @@ std::uint32_t powerOfTwoUpTo(std::uint32_t value, std::uint32_t limit)
 Launch::Launch(std::uint32_t paramsSize) : paramsCopy(paramsSize)
 {}
 
-void Launch::prepare(const Context& context, const OxrtLaunch& launch, const OxrtProgram& raygen, const void* params)
+void Launch::prepare(const Context& context, const OxrtLaunch& launch, const OxrtProgram& raygen, const void* params, std::size_t frames)
 {
+    frameBytes = frames;
     if (paramsCopy.size() != 0) std::memcpy(paramsCopy.data(), params, paramsCopy.size());
     view = launch;
     view.params = paramsCopy.data();
@@ -130,6 +131,18 @@ OxrtTile Launch::tileAt(std::uint64_t number) const
     return tile;
 }
 
+bool Launch::findStack(OxrtThread& thread)
+{
+    const char* limit = findStackLimit();
+    if (!limit) return true;
+    // A check in a program sees where its frame begins; the frame itself and those of what it calls lie below.
+    thread.stackLimit = limit + 2 * frameBytes;
+    if (static_cast<const char*>(__builtin_frame_address(0)) >= thread.stackLimit) return true;
+    recordFault(thread, OXRT_FAULT_STACK_OVERFLOW, nullptr, 0, "the programs need more stack than this thread has", nullptr, 0);
+    nextTile.store(tileCount, std::memory_order_relaxed);
+    return false;
+}
+
 void Launch::run()
 {
     const KernelFloatState floatState;
@@ -137,7 +150,7 @@ void Launch::run()
     thread.launch = &view;
     thread.params = view.params;
     thread.runtime = this;
-    thread.stackLimit = findStackLimit();
+    if (!findStack(thread)) return;
 
     const auto cancelState = std::atomic_ref(cancelWord);
     std::uint64_t end;

@@ -19,7 +19,8 @@ public:
     explicit Launch(std::uint32_t paramsSize);
 
     // For the next launch; `launch` comes without params, cancel word and tables.
-    void prepare(const Context& context, const OxrtLaunch& launch, const OxrtProgram& raygen, const void* params);
+    // `frames`: bytes of stack that all functions of the pipeline take together, 0 if nobody knows.
+    void prepare(const Context& context, const OxrtLaunch& launch, const OxrtProgram& raygen, const void* params, std::size_t frames);
 
     void run() override;
     bool exhausted() const override { return nextTile.load(std::memory_order_relaxed) >= tileCount; }
@@ -37,6 +38,8 @@ public:
     const OxrtLaunchReport& report() const { return faultReport; }
 
 private:
+    // False, with the fault told, if this thread's stack is too small for the programs.
+    bool findStack(OxrtThread& thread);
     void chooseTiles(unsigned threads);
     std::uint64_t grab(std::uint64_t& end);
     OxrtTile tileAt(std::uint64_t number) const;
@@ -45,6 +48,7 @@ private:
     OxrtLaunch view = {};
     const OxrtProgram* program = nullptr;
     unsigned threadCount = 1;
+    std::size_t frameBytes = 0;
 
     std::uint32_t tileSize[3] = {};
     std::uint32_t tilesAcross[3] = {};

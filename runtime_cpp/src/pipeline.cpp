@@ -77,7 +77,7 @@ void Pipeline::chooseVariant(const OxrtPipelineBinary& candidate)
 
 OxrtPipelineInfo Pipeline::info() const
 {
-    return {variant->lanes, variant->isa, variant->programCount, binary->paramsSize, binary->maxTraceDepth, uid};
+    return {variant->lanes, variant->isa, variant->programCount, binary->paramsSize, binary->maxTraceDepth, uid, static_cast<std::uint32_t>(workerStackSize)};
 }
 
 std::int32_t Pipeline::findProgram(const char* name) const
@@ -135,7 +135,7 @@ std::unique_ptr<Launch> Pipeline::makeLaunch(const void* params, std::size_t par
 {
     const OxrtProgram& raygen = checkLaunch(params, paramsSize, sbt, size);
     auto made = std::make_unique<Launch>(binary->paramsSize);
-    made->prepare(*context, describeLaunch(*sbt, size), raygen, params);
+    made->prepare(*context, describeLaunch(*sbt, size), raygen, params, frameBytes);
     return made;
 }
 
@@ -145,7 +145,7 @@ std::uint64_t Pipeline::prepareLaunch(const void* params, std::size_t paramsSize
     std::unique_lock lock(mutex);
     idle.wait(lock, [this] { return ticket == 0; });
     const std::uint64_t begunTicket = context->beginLaunch();
-    launch->prepare(*context, describeLaunch(*sbt, size), raygen, params);
+    launch->prepare(*context, describeLaunch(*sbt, size), raygen, params, frameBytes);
     ticket = begunTicket;
     begun = false;
     return begunTicket;
@@ -254,6 +254,12 @@ OxrtLaunchReport Pipeline::lastReport() const
     return failedReport;
 }
 
+void Pipeline::setFrames(std::size_t bytes)
+{
+    const std::lock_guard lock(mutex);
+    frameBytes = bytes;
+}
+
 void Pipeline::setStackDepths(std::uint32_t traces, std::uint32_t graph)
 {
     const std::lock_guard lock(mutex);
@@ -296,6 +302,11 @@ OxrtResult oxrtPipelineGetInfo(OxrtPipeline pipeline, OxrtPipelineInfo* info)
         if (!info) fail(OXRT_ERROR_INVALID_VALUE, "the result pointer `info` is NULL");
         *info = self->info();
     });
+}
+
+OxrtResult oxrtPipelineSetFrames(OxrtPipeline pipeline, uint64_t bytes)
+{
+    return guard([&] { find(pipeline)->setFrames(bytes); });
 }
 
 OxrtResult oxrtPipelineSetStackDepths(OxrtPipeline pipeline, uint32_t traceDepth, uint32_t graphDepth)

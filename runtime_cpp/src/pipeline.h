@@ -45,6 +45,7 @@ public:
     std::unique_ptr<Launch> makeLaunch(const void* params, std::size_t paramsSize, const OxrtShaderBindingTable* sbt, LaunchSize size) const;
 
     OxrtLaunchReport lastReport() const;
+    void setFrames(std::size_t bytes);
     void setStackDepths(std::uint32_t traces, std::uint32_t graph);
     void progress(std::uint64_t& done, std::uint64_t& total) const;
 
@@ -80,6 +81,7 @@ private:
     std::uint64_t ticket = 0; // of the launch between its begin and the wait that saw its end, else 0
     bool begun = false;       // it waits for oxrtLaunchWait
     OxrtLaunchReport failedReport = {};
+    std::size_t frameBytes = 0; // of all functions together
     std::uint32_t stackTraceDepth = UINT32_MAX; // traces that may nest on the configured stack
     std::uint32_t stackGraphDepth = UINT32_MAX; // traversables that may lie one below the other
 };

@@ -17,7 +17,6 @@ using namespace std::chrono_literals;
 // Measured on two cores: shorter spins make launches 300 us apart pay a wake-up, longer ones only burn the core.
 constexpr std::chrono::nanoseconds workerSpin = 300us;
 constexpr std::chrono::nanoseconds callerSpin = 20us;
-constexpr std::size_t workerStackSize = std::size_t(16) << 20; // nested traces each hold a traversal stack
 
 } // namespace
 

@@ -5,12 +5,16 @@
 
 #include <atomic>
 #include <chrono>
+#include <cstddef>
 #include <cstdint>
 #include <mutex>
 #include <pthread.h>
 #include <vector>
 
 namespace oxrt {
+
+// Address space; only what is used becomes memory. Nested traces each hold a traversal stack and the locals of 16 lanes.
+constexpr std::size_t workerStackSize = std::size_t(64) << 20;
 
 // Work that several threads do together.
 class SharedWork {

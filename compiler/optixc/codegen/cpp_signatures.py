@@ -14,6 +14,7 @@ from optixc.codegen.names import Scope
 from optixc.codegen.needs import Needs
 from optixc.codegen.program_classes import ProgramClass
 from optixc.ir.nodes import CallCallable, Function, LocalRef, Parameter, ParameterRole, Pipeline, is_reference_type
+from optixc.ir.programs import is_inlined
 from optixc.ir.types import Struct
 from optixc.ir.walk import expressions, statements
 from optixc.passes.callables import CallableSignature, signature_of_call, signatures_called
@@ -117,14 +118,20 @@ class Signatures:
         used = used_parameters(function)
         hidden = self.hidden_parameters(function, names)
         parameters = [self.parameter(p, names, p.local.name in used) for p in function.parameters]
-        template = "template <class Programs> " if self._needs[function.name].programs else ""
-        inline = "OXRT_INLINE " if function.name in self._inlined else ""
+        template = head_prefix(function, self._needs[function.name])
+        inline = "OXRT_INLINE " if function.name in self._inlined and is_inlined(function.source_name) else ""
         result = self._types.name(function.result)
         return f"{template}{inline}{result} {self.function(function.name)}({', '.join(hidden + parameters)})"
 
     def callee(self, name: str) -> str:
         """The function as a call names it, inside of a function that has its programs as a template argument."""
         return f"{self.function(name)}<Programs>" if self._needs[name].programs else self.function(name)
+
+
+def head_prefix(function: Function, needs: Needs) -> str:
+    """What stands before the result's type: the programs that a trace inside runs, and that the function is not to be inlined."""
+    template = "template <class Programs> " if needs.programs else ""
+    return template + ("" if is_inlined(function.source_name) else "__attribute__((noinline)) ")
 
 
 def used_parameters(function: Function) -> set[str]:

@@ -5,7 +5,7 @@ Helpers of which all arguments and the result are uniform, and that act on nothi
 
 from __future__ import annotations
 
-from optixc.codegen.cpp_signatures import FunctionNames, Signatures, used_parameters
+from optixc.codegen.cpp_signatures import FunctionNames, Signatures, head_prefix, used_parameters
 from optixc.codegen.cpp_spmd_types import WideTypes
 from optixc.codegen.names import Scope
 from optixc.codegen.needs import options_of
@@ -133,7 +133,7 @@ class Clones:
             text = self._parameter(parameter, parameter.local.name in clone.varying, parameter.local.name in assigned)
             parameters.append(f"{text} {names.locals[parameter.local.name]}" if parameter.local.name in used else text)
         result = self._types.name(function.result, clone.result_varies)
-        template = "template <class Programs> " if needs.programs else ""
+        template = head_prefix(function, needs)
         return f"{template}{result} {self.name(clone)}({', '.join(parameters)})"
 
     def callee_name(self, clone: Clone) -> str:

@@ -11,13 +11,14 @@ from optixc.frontend.symbols import FunctionSymbol
 from optixc.ir import types as t
 from optixc.ir.layout import payload_words
 from optixc.ir.nodes import Local, ParameterRole
-from optixc.ir.programs import ALL_PROGRAMS, ProgramKind
+from optixc.ir.programs import ALL_PROGRAMS, NOT_INLINED_PREFIX, ProgramKind, is_inlined
 
 _CALLABLES = (ProgramKind.DIRECT_CALLABLE, ProgramKind.CONTINUATION_CALLABLE)
 _WITH_PAYLOAD = (ProgramKind.MISS, ProgramKind.CLOSESTHIT, ProgramKind.ANYHIT, ProgramKind.INTERSECTION)
 _WITH_ATTRIBUTES = (ProgramKind.CLOSESTHIT, ProgramKind.ANYHIT)
 _STAGE_SHIFT = {ProgramKind.CLOSESTHIT: 2, ProgramKind.MISS: 4, ProgramKind.ANYHIT: 6, ProgramKind.INTERSECTION: 8}
 _READ, _WRITE = 1, 2
+SBT_DATA = "get_sbt_data()"
 MAX_PAYLOAD_CLASSES = 8
 
 
@@ -116,20 +117,27 @@ def check_requirements(diagnostics: Diagnostics, program: FunctionInstance) -> N
     """Report what this program does, itself or through helpers, that its kind may not do."""
     assert program.kind is not None
     payload = next((p.local for p in program.parameters if p.role is ParameterRole.PAYLOAD), None)
-    seen: set[FunctionInstance] = set()
-    pending: list[tuple[FunctionInstance, tuple[ChainLink, ...]]] = [(program, ())]
+    seen: set[tuple[FunctionInstance, bool]] = set()
+    pending: list[tuple[FunctionInstance, tuple[ChainLink, ...], FunctionInstance | None]] = [(program, (), None)]
     while pending:
-        function, chain = pending.pop()
-        if function in seen:
+        function, chain, outer = pending.pop()
+        if function.symbol is not None and not is_inlined(function.symbol.name):
+            outer = outer or function
+        if (function, outer is None) in seen:
             continue
-        seen.add(function)
+        seen.add((function, outer is None))
         for requirement in function.requirements:
             if program.kind not in requirement.allowed:
                 _report(diagnostics, program, function, requirement, chain)
+            elif outer is not None and (ProgramKind.DIRECT_CALLABLE not in requirement.allowed or requirement.what == SBT_DATA):
+                _report_not_inlined(diagnostics, outer, function, requirement, chain)
             elif payload is not None and isinstance(payload.type, t.Struct):
                 _check_word(diagnostics, program, payload.type, function, requirement, chain)
         for call in function.calls:
-            pending.append((call.instance, (ChainLink(call.span, f"called from `{function.name}`"), *chain)))
+            if program.kind is ProgramKind.EXCEPTION and call.instance.symbol is not None and not is_inlined(call.instance.symbol.name):
+                message = f"an exception program cannot call `{call.instance.name}`, which is not inlined"
+                diagnostics.add(function.source, "OX304", call.span, message, "call a helper without the prefix", chain)
+            pending.append((call.instance, (ChainLink(call.span, f"called from `{function.name}`"), *chain), outer))
         _check_recursion(diagnostics, function)
     if payload is not None:
         _check_semantics(diagnostics, program, payload)
@@ -143,6 +151,14 @@ def _report(
     note = f"this is {program.kind.value} program `{program.name}`"
     if function is not program:
         note = f"this helper is reached from {program.kind.value} program `{program.name}`"
+    diagnostics.add(function.source, requirement.code, requirement.span, message, note, chain)
+
+
+def _report_not_inlined(
+    diagnostics: Diagnostics, outer: FunctionInstance, function: FunctionInstance, requirement: Requirement, chain: tuple[ChainLink, ...]
+) -> None:
+    message = f"{requirement.what} is not allowed in `{outer.name}`, which is not inlined"
+    note = f"`{NOT_INLINED_PREFIX}` functions may do what direct callables do, without SBT data; pass it as an argument"
     diagnostics.add(function.source, requirement.code, requirement.span, message, note, chain)
 
 

@@ -9,6 +9,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any
 
+from optixc.enums_program import ExceptionFlags
 from optixc.errors import InvalidDeviceContextError, InvalidOperationError, InvalidValueError, ValidationFailureError, from_code
 from optixc.host import bound_values, in_flight, library, structs
 from optixc.host.array_uses import ArrayUses
@@ -16,7 +17,7 @@ from optixc.host.context import Context
 from optixc.host.graph_report import graph_forms
 from optixc.host.groups import ProgramGroup, Record, check_layout
 from optixc.host.sbt import ShaderBindingTable
-from optixc.host.stack_sizes import StackSizes, nesting_that_fits
+from optixc.host.stack_sizes import StackSizes, nesting_that_fits, stack_for
 
 STEP_MS = 50
 FAULT_BOUND_VALUE = 3
@@ -43,6 +44,8 @@ class PipelineReport:
     ignored: tuple[str, ...] = ()
     bound_values: tuple[dict[str, Any], ...] = ()
     stack: dict[str, int] = field(default_factory=dict)
+    frame_bytes: int = 0
+    trace_nesting: int | None = None
     is_any_graph: bool = True
     has_native_instances: dict[str, bool] = field(default_factory=dict)
     trace_uses: tuple[dict[str, Any], ...] = ()
@@ -115,6 +118,7 @@ class Pipeline:
         self._report = PipelineReport(
             lanes=int(info.lanes), params_size=int(info.paramsSize), max_trace_depth=int(info.maxTraceDepth), library=path, **report
         )
+        self._provide_stack(int(info.stackSize))
         self._arrays = ArrayUses(self._report.arrays)
         for group in self._groups:
             group.linked_into(self)
@@ -214,6 +218,21 @@ class Pipeline:
             self._refuse_dead()
         traces = nesting_that_fits(total, continuation_stack_size)
         library.check(self._lib.oxrtPipelineSetStackDepths(self._pipeline, traces, max_traversable_graph_depth))
+
+    def _provide_stack(self, available: int) -> None:
+        """Programs that look for overflows must have room to notice them, others for all traces that may nest."""
+        report, looks = self._report, self.exception_flags & ExceptionFlags.STACK_OVERFLOW
+        levels = 1 if looks or report.trace_nesting is None else min(report.trace_nesting, report.max_trace_depth)
+        needed = stack_for(report.frame_bytes, levels)
+        if needed > available:
+            pipeline, self._pipeline = self._pipeline, None
+            library.check(self._lib.oxrtPipelineDestroy(pipeline))
+            raise InvalidValueError(
+                f"the programs of this pipeline take up to {report.frame_bytes} bytes of stack a trace in {report.lanes} lanes, and "
+                f"{levels} traces may nest; that may be {needed >> 20} MiB, and threads have {available >> 20}. Keep large FixedArrays in "
+                "arrays of the parameters, use fewer lanes (simd=), lower max_trace_depth, or compile with ExceptionFlags.STACK_OVERFLOW"
+            )
+        library.check(self._lib.oxrtPipelineSetFrames(self._pipeline, report.frame_bytes))
 
     def check_record(self, record: Record) -> None:
         """Raises unless the record's data is what its programs in this pipeline read, with the arrays that they use."""

@@ -15,6 +15,8 @@ from optixc.errors import InvalidValueError
 MAX_TRACE_DEPTH = 31
 DEFAULT_CALLABLE_DEPTH = 2
 ALIGNMENT = 16
+STACK_RESERVE = 2 << 20
+"""What the runtime leaves for Embree's traversals (launch.cpp)."""
 
 
 @dataclass
@@ -125,6 +127,11 @@ def nesting_that_fits(stack_sizes: StackSizes, continuation: int) -> int:
     """How many traces may nest on a continuation stack of this size."""
     tree = DEFAULT_CALLABLE_DEPTH * stack_sizes.css_cc
     return max((depth for depth in range(MAX_TRACE_DEPTH + 1) if _continuation(stack_sizes, depth, tree) <= continuation), default=0)
+
+
+def stack_for(frames: int, levels: int) -> int:
+    """Bytes of a thread's stack on which `levels` traces may nest, if all functions together take `frames`; an upper bound."""
+    return STACK_RESERVE + (levels + 2) * frames
 
 
 def _continuation(sizes: StackSizes, trace_depth: int, callable_tree: int) -> int:

@@ -28,6 +28,15 @@ def program_kind(name: str) -> ProgramKind | None:
     return next((kind for kind in ProgramKind if name.startswith(kind.prefix)), None)
 
 
+NOT_INLINED_PREFIX = "__optix_enabled__"
+"""Helpers of this prefix stay functions of their own; they may do what direct callables do, without SBT data."""
+
+
+def is_inlined(source_name: str) -> bool:
+    """Whether the C++ compiler may make a helper part of its callers."""
+    return not source_name.startswith(NOT_INLINED_PREFIX)
+
+
 RG = ProgramKind.RAYGEN
 MS = ProgramKind.MISS
 CH = ProgramKind.CLOSESTHIT

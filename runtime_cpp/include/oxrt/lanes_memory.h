@@ -256,7 +256,37 @@ template <class T, int N, class X> OXRT_INLINE X& itemOf(CoopVec<T, N, X>& vecto
 template <class T> inline constexpr int itemCount = vectorSize<T> + fixedArraySize<T> + coopVecSize<T>;
 template <class T, int R, int C> inline constexpr int itemCount<Matrix<T, R, C>> = R;
 
+/* Few items are compared one by one and may stay in registers. Of more, only those are looked at that lanes name. */
+template <class B, int W> inline constexpr bool hasFewItems = itemCount<B> <= 2 * W;
+
+/* f(i, lanes of the mask whose index is i) for each different index that names one of `count` items. */
+template <int W, class I, class F> OXRT_INLINE void eachIndex(Lanes<bool, W> mask, I index, int count, F f) {
+    if constexpr (Scalar<I>) {
+        if (uint64_t(index) < uint64_t(count))
+            f(int(index), mask);
+    } else {
+        Lanes<bool, W> left = mask & (index >= ElementOf<I>(0)) & (index < ElementOf<I>(count));
+        while (any(left)) {
+            const auto i = index[firstLane(left)];
+            const Lanes<bool, W> own = left & (index == i);
+            f(int(i), own);
+            left = without(left, own);
+        }
+    }
+}
+
 /* Item `index`, zero where there is none. */
+template <int W, class B, class I> requires (!hasFewItems<B, W>) OXRT_INLINE auto loadItem(const B& base, I index) {
+    B& items = const_cast<B&>(base); /* read only, itemOf() is for both */
+    using Item = PlainType<decltype(itemOf(items, 0))>;
+    if constexpr (Scalar<I>)
+        return uint64_t(index) < uint64_t(itemCount<B>) ? itemOf(items, int(index)) : Item{};
+    else {
+        auto result = asWide<W>(Item{});
+        eachIndex<W>(Lanes<bool, W>(true), index, itemCount<B>, [&](int i, Lanes<bool, W> own) { assign(own, result, asWide<W>(itemOf(items, i))); });
+        return result;
+    }
+}
 template <int W, class B, class I> OXRT_INLINE auto loadItem(const B& base, I index) {
     B copy = base;
     using Item = PlainType<decltype(itemOf(copy, 0))>;
@@ -276,6 +306,8 @@ template <int W, class B, class I> OXRT_INLINE auto loadItem(const B& base, I in
 
 /* f(item, lanes of the mask that name it) for every item. */
 template <int W, class B, class I, class F> OXRT_INLINE void eachItem(Lanes<bool, W> mask, B& base, I index, F f) {
+    if constexpr (!hasFewItems<B, W>)
+        return eachIndex<W>(mask, index, itemCount<B>, [&](int i, Lanes<bool, W> own) { f(itemOf(base, i), own); });
     for (int i = 0; i < itemCount<B>; ++i)
         f(itemOf(base, i), mask & (index == ElementOf<I>(i)));
 }

@@ -262,9 +262,13 @@ typedef struct OxrtPipelineInfo {
     uint32_t paramsSize;
     uint32_t maxTraceDepth;
     uint32_t uid;
+    uint32_t stackSize; /* bytes of the stack of a thread that runs launches */
 } OxrtPipelineInfo;
 
 OXRT_API OxrtResult oxrtPipelineGetInfo(OxrtPipeline pipeline, OxrtPipelineInfo* info);
+/* Bytes of stack that all functions of the pipeline take together, as the C++ compiler tells; 0, as at first, if nobody knows. Launches
+   keep as much of each stack free where they look for overflows. */
+OXRT_API OxrtResult oxrtPipelineSetFrames(OxrtPipeline pipeline, uint64_t bytes);
 /* How many traces may nest on the stack that is configured, and how many traversables may lie one below the other in what they trace
    against; more are stack overflows and trace depth exceptions in pipelines compiled to notice them. */
 OXRT_API OxrtResult oxrtPipelineSetStackDepths(OxrtPipeline pipeline, uint32_t traceDepth, uint32_t graphDepth);
