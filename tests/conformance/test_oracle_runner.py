@@ -112,6 +112,14 @@ def test_a_probe_alone_with_some_of_its_rays_in_a_group_of_another_name(harness:
             test_oracle.test_traced_probe(harness, Counter(), alone)
 
 
+def test_rays_of_another_form_are_told() -> None:
+    for rays in ([1, 2], [{"origin": [0, 0, 0]}], []):
+        probe = Probe("group", {**PLAIN, "rays": rays})
+        assert not probe.rays
+        assert oracle_special.check_of(probe) is None
+        assert "rays" in oracle_special.why_not(probe)
+
+
 def test_files_may_be_split_and_one_that_is_none_is_told(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     for index in range(2):
         (tmp_path / f"{index}.json").write_text(json.dumps({"group": "one", "probes": [{**PLAIN, "name": f"probe {index}"}]}))
