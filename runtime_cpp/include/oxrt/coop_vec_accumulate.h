@@ -74,7 +74,7 @@ OXRT_INLINE void coopVecReduceSumAccumulate(Spans spans, const CoopVec<T, N>& ve
 /* One column of a tile. */
 typedef float TileColumn __attribute__((vector_size(4 * TILE_ROWS)));
 
-/* The numbers of an optimal layout, tile by tile: product(row, column) gives up to 16 sums of a column from `row` on. Several columns are
+/* The numbers of an optimal layout, tile by tile: product(row, k, column) adds up to 16 sums of column k from `row` on. Several columns are
    computed before the first exchange, which waits for everything before it. */
 template <int N, int K, class F> OXRT_INLINE void addToTiles(char* matrix, F product) {
     constexpr int most = 16;
@@ -83,7 +83,8 @@ template <int N, int K, class F> OXRT_INLINE void addToTiles(char* matrix, F pro
             const int count = K - first < most ? K - first : most;
             float sums[most][TILE_ROWS];
             for (int k = 0; k < count; ++k) {
-                const TileColumn column = product(row, first + k);
+                TileColumn column = {};
+                product(row, first + k, column);
                 __builtin_memcpy(sums[k], &column, sizeof(column));
             }
             float* tile = reinterpret_cast<float*>(matrix) + (int64_t(row) * K + TILE_ROWS * first);
@@ -98,11 +99,9 @@ void coopVecOuterProductAccumulate(Spans spans, const CoopVec<T, N>& a, const Co
     constexpr uint64_t bytes = matrixBytes<MatrixElement::FLOAT32, MatrixLayout::TRAINING_OPTIMAL>(N, K, 0);
     if (!spans.contains(matrix, offset, bytes, ACCUMULATOR_ALIGNMENT))
         return;
-    addToTiles<N, K>(reinterpret_cast<char*>(matrix.data) + offset, [&](int row, int k) __attribute__((always_inline)) {
-        TileColumn sums = {};
+    addToTiles<N, K>(reinterpret_cast<char*>(matrix.data) + offset, [&](int row, int k, TileColumn& sums) __attribute__((always_inline)) {
         for (int r = 0; r < TILE_ROWS && row + r < N; ++r)
             sums[r] = float(a.items[row + r]) * float(b.items[k]);
-        return sums;
     });
 }
 

@@ -67,6 +67,10 @@ template <int MANTISSA, int LOWEST_EXPONENT, class C> OXRT_INLINE C roundToFloat
     return select(x == x, copysign(limited, x), x);
 }
 
+/* A whole number that int32 holds: the plain conversion, which compilers make of many numbers at once. */
+template <Scalar C> OXRT_INLINE int32_t smallInteger(C x) { return int32_t(x); }
+template <Number C> requires(!Scalar<C>) OXRT_INLINE auto smallInteger(C x) { return convert<int32_t>(x); }
+
 /* The item as the matrix takes it. Integers are limited to the range; a fraction goes to the nearest, ties to even, NaN to 0. */
 template <MatrixElement INNER, class C> OXRT_INLINE auto interpreted(C x) {
     if constexpr (INNER == MatrixElement::FLOAT8_E4M3)
@@ -77,7 +81,7 @@ template <MatrixElement INNER, class C> OXRT_INLINE auto interpreted(C x) {
         constexpr int lowest = INNER == MatrixElement::INT8 ? -128 : 0, highest = INNER == MatrixElement::INT8 ? 127 : 255;
         using E = ElementOf<C>;
         if constexpr (isFloating<E>)
-            return convert<int32_t>(C(select(x == x, C(max(E(lowest), C(min(C(round(x)), E(highest))))), C(E(0)))));
+            return smallInteger(C(select(x == x, C(max(E(lowest), C(min(C(round(x)), E(highest))))), C(E(0)))));
         else if constexpr (isSigned<E>)
             return C(max(E(lowest), C(min(x, E(highest)))));
         else
@@ -89,12 +93,15 @@ template <MatrixElement INNER, class C> OXRT_INLINE auto interpreted(C x) {
 /* The items as factors: numbers, or for integers pairs of neighbours in one word. Beyond the last stands zero. */
 template <MatrixElement INNER, class T, int K, class X, class S, int COLUMNS>
 OXRT_INLINE void readFactors(S (&factors)[COLUMNS], const CoopVec<T, K, X>& vector) {
-    if constexpr (isByte(INNER))
-        for (int j = 0; j < COLUMNS; ++j) {
-            const S low = S(interpreted<INNER>(computed<T>(vector, 2 * j))) & 0xffff;
-            factors[j] = 2 * j + 1 < K ? S(low | S(interpreted<INNER>(computed<T>(vector, 2 * j + 1 < K ? 2 * j + 1 : 0))) << 16) : low;
-        }
-    else
+    if constexpr (isByte(INNER)) {
+        S whole[2 * COLUMNS];
+        for (int k = 0; k < K; ++k)
+            whole[k] = S(interpreted<INNER>(computed<T>(vector, k)));
+        if constexpr (K % 2 != 0)
+            whole[K] = S(0);
+        for (int j = 0; j < COLUMNS; ++j)
+            factors[j] = (whole[2 * j] & 0xffff) | (whole[2 * j + 1] << 16);
+    } else
         for (int k = 0; k < COLUMNS; ++k)
             factors[k] = S(interpreted<INNER>(computed<T>(vector, k)));
 }
@@ -142,14 +149,13 @@ OXRT_INLINE void readPart(float* part, const char* matrix, uint32_t stride, int 
 template <int ROWS, int K, MatrixElement E, MatrixLayout L>
 OXRT_INLINE void readPart(int32_t* part, const char* matrix, uint32_t stride, int row, int column, int count) {
     using B = MemoryElement<E>;
-    const uint64_t next = L == MatrixLayout::ROW_MAJOR ? 1 : stride;
+    constexpr bool isByRows = L == MatrixLayout::ROW_MAJOR;
+    const uint64_t next = isByRows ? 1 : stride;
     for (int r = 0; r < ROWS; ++r)
         for (int k = 0; k < count; ++k) {
             const int first = 2 * (column + k);
-            const char* place = L == MatrixLayout::ROW_MAJOR ? matrix + uint64_t(row + r) * stride + first
-                                                             : matrix + uint64_t(first) * stride + row + r;
-            part[L == MatrixLayout::ROW_MAJOR ? PART_COLUMNS * r + k : TILE_ROWS * k + r] =
-                pairOf<B>(place, first + 1 < K ? place + next : nullptr);
+            const char* place = isByRows ? matrix + uint64_t(row + r) * stride + first : matrix + uint64_t(first) * stride + row + r;
+            part[isByRows ? PART_COLUMNS * r + k : TILE_ROWS * k + r] = pairOf<B>(place, first + 1 < K ? place + next : nullptr);
         }
 }
 
@@ -158,7 +164,7 @@ OXRT_INLINE void readPart(int32_t* part, const char* matrix, uint32_t stride, in
 OXRT_INLINE float addProduct(float sum, float weight, float factor) { return __builtin_fmaf(weight, factor, sum); }
 /* The products of both halves. */
 OXRT_INLINE int32_t addProduct(int32_t sum, int32_t weight, int32_t factor) {
-    return sum + int32_t(int16_t(weight)) * int32_t(int16_t(factor)) + (weight >> 16) * (factor >> 16);
+    return sum + (weight << 16 >> 16) * (factor << 16 >> 16) + (weight >> 16) * (factor >> 16);
 }
 
 /* How many results of this number are computed at once; registers hold them and what they are multiplied with. */
@@ -173,6 +179,20 @@ OXRT_INLINE void addProducts(S (&sums)[ROWS], const M* weights, const S* factors
         for (int r = 0; r < ROWS; ++r)
             sums[r] = addProduct(sums[r], weights[ROW_STEP * r + COLUMN_STEP * k], factor);
     }
+}
+
+/* Pairs of integers in scalar code: 16 rows are one value, which compilers left to themselves do not see. */
+template <int ROW_STEP, int COLUMN_STEP> requires(ROW_STEP == 1)
+OXRT_INLINE void addProducts(int32_t (&sums)[TILE_ROWS], const int32_t* weights, const int32_t* factors, int columns) {
+    typedef int32_t Column __attribute__((vector_size(4 * TILE_ROWS)));
+    Column total;
+    __builtin_memcpy(&total, sums, sizeof(total));
+    for (int k = 0; k < columns; ++k) {
+        Column column;
+        __builtin_memcpy(&column, weights + COLUMN_STEP * k, sizeof(column));
+        total += (column << 16 >> 16) * (factors[k] << 16 >> 16) + (column >> 16) * (factors[k] >> 16);
+    }
+    __builtin_memcpy(sums, &total, sizeof(total));
 }
 
 /* ROWS results from `row` on. */
@@ -196,8 +216,8 @@ OXRT_INLINE void multiplyRows(S* results, const char* matrix, uint32_t stride, i
             M part[TILE_ROWS * PART_COLUMNS];
             const int count = columns - k < PART_COLUMNS ? columns - k : int(PART_COLUMNS);
             readPart<ROWS, K, E, L>(part, matrix, stride, row, k, count);
-            addProducts<L == MatrixLayout::ROW_MAJOR ? int(PART_COLUMNS) : 1, L == MatrixLayout::ROW_MAJOR ? 1 : int(TILE_ROWS)>(
-                sums, part, factors + k, count);
+            constexpr bool isByRows = L == MatrixLayout::ROW_MAJOR;
+            addProducts<isByRows ? int(PART_COLUMNS) : 1, isByRows ? 1 : int(TILE_ROWS)>(sums, part, factors + k, count);
         }
     for (int r = 0; r < ROWS; ++r)
         results[r] = sums[r];

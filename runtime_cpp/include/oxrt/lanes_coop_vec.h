@@ -144,16 +144,14 @@ void coopVecOuterProductAccumulate(Spans spans, const CoopVec<T, N, X>& a, const
             for (int i = 0; i < W; ++i)
                 turned[i][n] = column[i];
         }
-        addToTiles<N, K>(reinterpret_cast<char*>(one.data) + start, [&](int row, int k) __attribute__((always_inline)) {
+        addToTiles<N, K>(reinterpret_cast<char*>(one.data) + start, [&](int row, int k, TileColumn& sums) __attribute__((always_inline)) {
             float factors[W];
             storeLanes(factors, select(lanes, wideB.items[k], 0.0f));
-            TileColumn sums = {};
             for (int i = 0; i < W; ++i) {
                 TileColumn column;
                 __builtin_memcpy(&column, &turned[i][row], sizeof(column));
                 sums += column * factors[i];
             }
-            return sums;
         });
     }, matrix, offset);
 }
