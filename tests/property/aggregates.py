@@ -89,7 +89,13 @@ class Aggregates:
             self.scope.places.append((f"{name}[{self._index(size)}]", element))
 
     def _index(self, size: int) -> str:
-        return f"{self.make.expression(self.random.choice(('int32', 'uint32')), 1)} & {size - 1}"
+        index = f"{self.make.expression(self.random.choice(('int32', 'uint32')), 1)} & {size - 1}"
+        if self.random.random() < 0.4:
+            # A name that nothing else assigns, so that it stays in range.
+            name = self.fresh()
+            self.add(f"{name} = {index}")
+            return name
+        return index
 
     def _value(self, type_: str) -> str:
         """A new struct or fixed array."""

@@ -87,6 +87,16 @@ PROGRAMS = {
     value = patient(params.in_int32[i, 0]) if params.in_int32[i, 1] > 1000000 else 2.5
     params.out_float64[i, 0] = value
 """,
+    "items_by_a_name_that_differs": """
+    items, vector, matrix = ox.FixedArray[int32, 32](), float4(1.0), float4x4()
+    items[i] = 9
+    k = i & 3
+    vector[k] = 2.0
+    matrix[k][k] = 3.0
+    for turn in range(32):
+        params.out_int32[i, turn & 7] += items[turn] * turn
+    params.out_float32[i, 0] = vector.x + 10.0 * vector.w + matrix[1].y
+""",
     "enum_in_the_index_of_a_target": """
     values = ox.FixedArray[int32, 8]()
     values[Mode.SECOND], values[Bits.A | Bits.BOTH], value = i, 2 * i, values[LIMIT]

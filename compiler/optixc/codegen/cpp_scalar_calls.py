@@ -5,7 +5,10 @@ from __future__ import annotations
 from optixc.codegen.cpp_coop_vec import checked_spans, memory_call, values_of
 from optixc.codegen.cpp_expr import Expressions
 from optixc.codegen.cpp_signatures import FunctionNames, Signatures
-from optixc.codegen.cpp_types import TypeNames
+from optixc.codegen.cpp_types import (
+    TypeNames,
+    field_name,
+)
 from optixc.codegen.names import Scope, string_literal
 from optixc.codegen.needs import REPORT, THROW, Options
 from optixc.codegen.program_classes import known_flags
@@ -27,7 +30,7 @@ from optixc.ir.nodes import (
     Trace,
     is_reference_type,
 )
-from optixc.ir.types import CoopVec, FixedArray, Struct
+from optixc.ir.types import CoopVec, Struct
 from optixc.ir.walk import expressions
 
 _FLAGS_ARGUMENT = 7
@@ -91,8 +94,10 @@ class ScalarCalls:
                 indices = ", ".join(self._expressions.text(index) for index in node.indices)
                 conditions.append(f"oxrt::checked({self._names.thread}).contains({self._expressions.text(node.array)}, {indices})")
                 break
-            if isinstance(node, IndexRef) and isinstance(node.base.type, FixedArray | CoopVec) and not isinstance(node.index, Literal):
-                conditions.append(f"{self._expressions.place(node.base)}.contains({self._expressions.text(node.index)})")
+            if isinstance(node, IndexRef) and not isinstance(node.index, Literal):
+                base_text, index = self._expressions.place(node.base), self._expressions.text(node.index)
+                checked = f"oxrt::checked({self._names.thread}).containsItem({base_text}, {index})"
+                conditions.append(f"{base_text}.contains({index})" if isinstance(node.base.type, CoopVec) else checked)
             base = getattr(node, "base", None)
             if base is None:
                 break
@@ -162,7 +167,7 @@ class ScalarCalls:
 
     def trace(self, statement: Trace) -> str:
         programs = self._signatures.program_class(statement.payload_type)
-        payload = "oxrt::noPayload" if statement.payload is None else self._expressions.place(statement.payload)
+        payload = "oxrt::noPayload" if statement.payload is None else self._reference(statement.payload)
         arguments = [self._expressions.text(argument) for argument in statement.arguments]
         if arguments:
             flags = known_flags(statement)
@@ -175,4 +180,15 @@ class ScalarCalls:
     def _argument(self, argument: Expr) -> str:
         """An argument of a helper; structs and fixed arrays stay places, so that they can be passed by reference."""
         is_place = is_reference_type(argument.type) and isinstance(argument, LocalRef | FieldRef | IndexRef | ElementRef)
-        return self._expressions.place(argument) if is_place else self._expressions.text(argument)
+        return self._reference(argument) if is_place else self._expressions.text(argument)
+
+    def _reference(self, place: Expr) -> str:
+        """A place that is passed by reference; in checked builds one that exists in any case."""
+        match place:
+            case FieldRef(base=base, name=name):
+                assert isinstance(base.type, Struct)
+                return f"{self._reference(base)}.{field_name(base.type, name)}"
+            case IndexRef(base=base, index=index) if self._options.is_checked and not isinstance(index, Literal):
+                return f"oxrt::checked({self._names.thread}).itemPlace({self._reference(base)}, {self._expressions.text(index)})"
+            case _:
+                return self._expressions.place(place)

@@ -200,10 +200,11 @@ class LaneFunction:
         place = self._expressions.place(target)
         if self._calls.has_varying_index(target):
             self._writer.line(self._calls.store_item(target, statement.value), statement.span)
-        elif root.name not in self._clone.varying or self._is_plain(root):
-            self._writer.line(f"{place} = {value};", statement.span)
-        else:
-            self._writer.line(f"oxrt::assign({self._mask}, {place}, {value});", statement.span)
+            return
+        is_plain = root.name not in self._clone.varying or self._is_plain(root)
+        guard = self._calls.guard(target)
+        text = f"{place} = {value};" if is_plain else f"oxrt::assign({self._mask}, {place}, {value});"
+        self._writer.line(text if guard is None else f"if ({guard}) {text}", statement.span)
 
     def _is_plain(self, local: Local) -> bool:
         """Whether no lane outside of the current mask will read the local."""

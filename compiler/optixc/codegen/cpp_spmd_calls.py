@@ -24,12 +24,17 @@ from optixc.ir.nodes import (
     Expr,
     FieldRef,
     IndexRef,
+    Literal,
     LocalRef,
     Print,
     Trace,
     is_reference_type,
 )
-from optixc.ir.types import Struct
+from optixc.ir.types import (
+    CoopVec,
+    FixedArray,
+    Struct,
+)
 from optixc.passes.uniformity import Clone
 
 HIT_OBJECT_SETTERS = frozenset({"make_nop_hit_object", "hit_object_set_sbt_record_index", "reorder"})
@@ -80,7 +85,10 @@ class LaneCalls:
             case ComponentRef(base=base, components=(component,)):
                 return f"{self._part(base, element)}.{'xyzw'[component]}"
             case IndexRef(base=base, index=index):
-                return f"{self._part(base, element)}[oxrt::inLane({self._expressions.text(index)}, lane)]"
+                inner, position = self._part(base, element), f"oxrt::inLane({self._expressions.text(index)}, lane)"
+                if self._options.is_checked and isinstance(base.type, FixedArray) and not isinstance(index, Literal):
+                    return f"oxrt::checked({self._names.thread}.atLane(lane)).itemPlace({inner}, {position})"
+                return f"{inner}[{position}]"
             case _:
                 assert place is element
                 return "element"
@@ -96,7 +104,19 @@ class LaneCalls:
         return has_varying_index(self._expressions, place)
 
     def _loops(self, value: str = "") -> ItemLoops:
-        return ItemLoops(self._expressions, self._names.locals.values(), value)
+        checked = f"oxrt::checked({self._names.thread}, {{}})" if self._options.is_checked else ""
+        return ItemLoops(self._expressions, self._names.locals.values(), value, checked)
+
+    def guard(self, place: Expr) -> str | None:
+        """The condition under which the items on the way to a place of a local exist, in checked builds; None where they always do."""
+        conditions = []
+        node = place
+        while self._options.is_checked and isinstance(node, FieldRef | ComponentRef | IndexRef):
+            if isinstance(node, IndexRef) and not isinstance(node.index, Literal) and not isinstance(node.base.type, CoopVec):
+                item = f"{self._expressions.place(node.base)}, {self._expressions.text(node.index)}"
+                conditions.append(f"oxrt::any(oxrt::checked({self._names.thread}, {self._mask}).insideItems({item}))")
+            node = node.base
+        return " && ".join(reversed(conditions)) or None
 
     # ---- calls ---------------------------------------------------------------------------------------------------------------
 
@@ -247,4 +267,4 @@ class LaneCalls:
         """An argument of a helper; structs and fixed arrays stay places, so that they can be passed by reference."""
         is_place = is_reference_type(argument.type) and isinstance(argument, LocalRef | FieldRef | IndexRef | ElementRef)
         is_loaded = self.has_varying_index(argument) or (isinstance(argument, ElementRef) and self._expressions.lanes.varies(argument))
-        return self._expressions.place(argument) if is_place and not is_loaded else self._expressions.text(argument)
+        return self._loops().place(argument) if is_place and not is_loaded else self._expressions.text(argument)

@@ -31,7 +31,15 @@ from optixc.ir.nodes import (
     Logical,
     Select,
 )
-from optixc.ir.types import Scalar, ScalarKind, Tuple, Type, Vector, scalar_of
+from optixc.ir.types import (
+    CoopVec,
+    Scalar,
+    ScalarKind,
+    Tuple,
+    Type,
+    Vector,
+    scalar_of,
+)
 from optixc.ir.walk import subexpressions
 from optixc.passes.uniformity import COMMON_IN_INTERSECTION, Clone, varies
 
@@ -128,6 +136,8 @@ class LaneDialect:
         return Code(f"{within(array, PRIMARY)}.at({places})")
 
     def index(self, node: IndexRef, base: Code, index: Code) -> Code:
+        if self._options.is_checked and not isinstance(node.index, Literal) and not isinstance(node.base.type, CoopVec):
+            return Code(f"oxrt::checked({self._names.thread}, {self.mask}).item({base.text}, {index.text})")
         if self.varies(node.index) or (self._options.is_checked and not isinstance(node.index, Literal)):
             return Code(f"oxrt::loadItem<LANES>({base.text}, {index.text})")
         return Code(f"{within(base, PRIMARY)}[{index.text}]")

@@ -7,15 +7,17 @@ from collections.abc import Collection
 
 from optixc.codegen.cpp_spmd_expr import LaneExpressions
 from optixc.codegen.cpp_types import field_name
-from optixc.ir.nodes import ComponentRef, ElementRef, Expr, FieldRef, IndexRef
-from optixc.ir.types import Struct
+from optixc.ir.nodes import ComponentRef, ElementRef, Expr, FieldRef, IndexRef, Literal
+from optixc.ir.types import CoopVec, FixedArray, Struct
 
 
 class ItemLoops:
     """The loops around what is done with places; `mask` are the lanes for which it is done inside of them."""
 
-    def __init__(self, expressions: LaneExpressions, taken: Collection[str], value: str = "") -> None:
+    def __init__(self, expressions: LaneExpressions, taken: Collection[str], value: str, checked: str) -> None:
+        """`value` is taken before the loops, "" for none; `checked` is a form of a mask that checks its lanes' indices, "" for none."""
         self.mask = expressions.lanes.mask
+        self._checked = checked
         self._expressions = expressions
         self._taken = taken
         self._value = value
@@ -31,7 +33,11 @@ class ItemLoops:
                 return f"{self.place(base)}.{'xyzw'[component]}"
             case IndexRef(base=base, index=index):
                 inner, position = self.place(base), self._expressions.text(index)
-                return self._item(inner, position) if self._expressions.lanes.varies(index) else f"{inner}[{position}]"
+                if self._expressions.lanes.varies(index):
+                    return self._item(inner, position, bool(self._checked) and not isinstance(base.type, CoopVec))
+                if self._checked and isinstance(base.type, FixedArray) and not isinstance(index, Literal):
+                    return f"{self._checked.format(self.mask)}.itemPlace({inner}, {position})"
+                return f"{inner}[{position}]"
             case _:
                 return self._expressions.place(place)
 
@@ -39,10 +45,11 @@ class ItemLoops:
         """The loops with a statement in them."""
         return " ".join([*self._heads, statement, *("});" for _ in self._heads)])
 
-    def _item(self, base: str, index: str) -> str:
+    def _item(self, base: str, index: str, is_checked: bool) -> str:
         item, own = self._name("item"), self._name("own")
         captures = f"&, value = {self._value}" if self._value and not self._heads else "&"
-        self._heads.append(f"oxrt::eachItem({self.mask}, {base}, {index}, [{captures}](auto& {item}, Mask {own}) {{")
+        mask = f"{self._checked.format(self.mask)}.insideItems({base}, {index})" if is_checked else self.mask
+        self._heads.append(f"oxrt::eachItem({mask}, {base}, {index}, [{captures}](auto& {item}, Mask {own}) {{")
         self.mask = own
         return item
 

@@ -21,7 +21,9 @@ from optixc.ir.nodes import (
     Expr,
     ForRange,
     Function,
+    IndexRef,
     IntrinsicCall,
+    Literal,
     ParamsRef,
     Pipeline,
     Print,
@@ -149,6 +151,8 @@ def _of_expression(expression: Expr, options: Options) -> Needs:
         case ParamsRef():
             return Needs(thread=True, params=True)
         case ElementRef():
+            return Needs(thread=options.is_checked)
+        case IndexRef(index=index) if not isinstance(index, Literal):
             return Needs(thread=options.is_checked)
         case IntrinsicCall(name=name):
             return _of_intrinsic(name, options)

@@ -19,6 +19,7 @@ from optixc.ir.nodes import (
     CallCallable,
     CallHelper,
     CallIntrinsic,
+    ComponentRef,
     Continue,
     Expr,
     FieldRef,
@@ -181,7 +182,7 @@ class _FunctionAnalysis:
     def _statement(self, statement: Stmt, path: Region) -> None:
         match statement:
             case Assign(target=target, value=value):
-                self._store(target, self.varies(value) or self._place_varies(target), path)
+                self._store(target, self.varies(value) or self._names_items(target), path)
             case If(condition=condition):
                 if self.varies(condition):
                     self._diverges(statement)
@@ -232,14 +233,9 @@ class _FunctionAnalysis:
         if root is not None:
             self._assigned(root.name, varies, path)
 
-    def _place_varies(self, place: Expr) -> bool:
-        """Whether different lanes store to different parts."""
-        indices = [operand for operand in operands(place) if not isinstance(operand, LocalRef)]
-        return any(self.varies(index) for index in indices) and place_root(place) is not None
-
     def _names_items(self, place: Expr) -> bool:
         """Whether lanes name different items of a local on the way to a place."""
-        while isinstance(place, FieldRef | IndexRef):
+        while isinstance(place, FieldRef | ComponentRef | IndexRef):
             if isinstance(place, IndexRef) and self.varies(place.index):
                 return True
             place = place.base

@@ -135,10 +135,37 @@ __attribute__((noinline, cold)) void faultOfIndex(OxrtThread& thread, Place plac
                     array.shape[1], array.shape[2]);
 }
 
-/* Array access with a check: an index out of range reads zero, or has `contains` say no, and is a fault. */
+template <class T, int SIZE> OXRT_INLINE constexpr int itemsOf(const FixedArray<T, SIZE>&) { return SIZE; }
+template <class T, int N> OXRT_INLINE constexpr int itemsOf(const Vector<T, N>&) { return N; }
+template <class T, int R, int C> OXRT_INLINE constexpr int itemsOf(const Matrix<T, R, C>&) { return R; }
+template <class I> void faultOfItem(OxrtThread& thread, Place place, I index, int count) {
+    faultWithValues(thread, OXRT_FAULT_BOUNDS, "index out of range (\1), there are \1 items", place, index, count);
+}
+
+/* Access with a check: an index out of range reads zero, or has `contains` say no, and is a fault. Items are those of fixed arrays,
+   vectors and matrices; where there is none, `itemPlace` is a place that nobody looks at. */
 struct Checked {
     OxrtThread& thread;
     Place place;
+
+    template <class B, class I> OXRT_INLINE bool containsItem(const B& base, I index) const {
+        if (__builtin_expect(uint64_t(int64_t(index)) < uint64_t(itemsOf(base)), 1))
+            return true;
+        faultOfItem(thread, place, index, itemsOf(base));
+        return false;
+    }
+    template <class B, class I> OXRT_INLINE auto item(const B& base, I index) const {
+        auto result = base[0];
+        result = containsItem(base, index) ? base[index] : decltype(result){};
+        return result;
+    }
+    template <class T, int SIZE, class I> OXRT_INLINE T& itemPlace(FixedArray<T, SIZE>& base, I index) const {
+        static thread_local T nothing;
+        if (containsItem(base, index))
+            return base[index];
+        nothing = T{};
+        return nothing;
+    }
 
     template <class T, int RANK, class... I> OXRT_INLINE bool contains(const Array<T, RANK>& array, I... indices) const {
         if (__builtin_expect(array.contains(indices...), 1))

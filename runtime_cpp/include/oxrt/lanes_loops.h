@@ -101,6 +101,18 @@ OXRT_INLINE Lanes<bool, W> insideAt(LanesThread<W>& thread, Lanes<bool, W> mask,
     return found;
 }
 
+/* The lanes of the mask whose index names an item; a fault for the first whose does not. */
+template <int W, class B, class I> OXRT_INLINE Lanes<bool, W> insideItemsAt(LanesThread<W>& thread, Lanes<bool, W> mask, Place place, const B&, I index) {
+    auto wide = asWide<W>(index);
+    using Wide = decltype(wide);
+    const Lanes<bool, W> found = mask & (wide >= Wide(ElementOf<Wide>(0))) & (wide < Wide(ElementOf<Wide>(itemCount<B>)));
+    if (const Lanes<bool, W> outside = without(mask, found); __builtin_expect(any(outside), 0)) {
+        const int lane = firstLane(outside);
+        faultOfItem(thread.atLane(lane), place, inLane(wide, lane), itemCount<B>);
+    }
+    return found;
+}
+
 /* A call of the lanes of a mask on elements that may not exist. The place of the call is that of the author's line. */
 template <int W> struct CheckedLanes {
     LanesThread<W>& thread;
@@ -115,6 +127,20 @@ template <int W> struct CheckedLanes {
     }
     template <class V, class A, class... I> OXRT_INLINE void store(const V& value, const A& array, I... indices) const {
         oxrt::store<W>(inside(array, indices...), value, array, indices...);
+    }
+    template <class B, class I> OXRT_INLINE Lanes<bool, W> insideItems(const B& base, I index) const {
+        return insideItemsAt(thread, mask, place, base, index);
+    }
+    template <class B, class I> OXRT_INLINE auto item(const B& base, I index) const {
+        insideItems(base, index);
+        return loadItem<W>(base, index);
+    }
+    template <class T, int SIZE, Scalar I> OXRT_INLINE T& itemPlace(FixedArray<T, SIZE>& base, I index) const {
+        static thread_local T nothing;
+        if (any(insideItems(base, index)))
+            return base[index];
+        nothing = T{};
+        return nothing;
     }
 };
 template <int W> OXRT_INLINE CheckedLanes<W> checked(LanesThread<W>& thread, Lanes<bool, W> mask, Place place = Place::current()) {

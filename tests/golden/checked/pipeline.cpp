@@ -45,10 +45,10 @@ float total(OxrtThread& thread, State& state, int32_t count) {
         if (oxrt::isCancelled(thread))
             break;
 #line 32 "shader.py"
-        result = result + state.weights.load(k);
+        result = result + oxrt::checked(thread).item(state.weights, k);
 #line 32 "shader.py"
         oxrt::assertTrue(thread, oxrt::Place::current(), result == result, "result is NaN (result = \001, k = \001)", result, k);
-        if (state.weights.contains(k))
+        if (oxrt::checked(thread).containsItem(state.weights, k))
 #line 33 "shader.py"
             state.weights[k] = 0.0f;
     }
@@ -63,7 +63,7 @@ void raygen_checked(OxrtThread& thread) {
     oxrt::uint3 i = oxrt::getLaunchIndex(thread);
     [[maybe_unused]] uint32_t unread = i.x + 1u;
     State state = State{oxrt::FixedArray<float, 4>{}};
-    if (state.weights.contains(i.x % 4u))
+    if (oxrt::checked(thread).containsItem(state.weights, i.x % 4u))
 #line 42 "shader.py"
         state.weights[i.x % 4u] = 1.0f;
     Radiance ray = Radiance{oxrt::checked(thread).load(params.values, i.y, i.x)};

@@ -89,10 +89,10 @@ Wide<float> total_lanes([[maybe_unused]] Lanes& thread, [[maybe_unused]] Mask ma
         if (oxrt::isCancelled(thread))
             break;
 #line 32 "shader.py"
-        result_ = result_ + oxrt::loadItem<LANES>(state.weights, k);
+        result_ = result_ + oxrt::checked(thread, mask).item(state.weights, k);
 #line 32 "shader.py"
         oxrt::assertTrue(thread, oxrt::Place::current(), mask, result_ == result_, "result is NaN (result = \001, k = \001)", result_, k);
-        oxrt::assign(mask, state.weights[k], 0.0f);
+        if (oxrt::any(oxrt::checked(thread, mask).insideItems(state.weights, k))) oxrt::assign(mask, state.weights[k], 0.0f);
     }
 #line 34 "shader.py"
     return result_;
@@ -105,7 +105,9 @@ void raygen_checked_lanes([[maybe_unused]] Lanes& thread, [[maybe_unused]] Mask 
     Wide<oxrt::uint3> i = oxrt::getLaunchIndex(thread);
     [[maybe_unused]] Wide<uint32_t> unread = i.x + 1u;
     Wide<State> state = oxrt::spread<16>(State{oxrt::FixedArray<float, 4>{}});
-    oxrt::eachItem(mask, state.weights, i.x % 4u, [&, value = Wide<float>(1.0f)](auto& item, Mask own) { oxrt::assign(own, item, value); });
+    oxrt::eachItem(oxrt::checked(thread, mask).insideItems(state.weights, i.x % 4u), state.weights, i.x % 4u, [&,
+            value = Wide<float>(1.0f)](auto& item, Mask own) { oxrt::assign(own, item, value); });
+#line 43 "shader.py"
     Wide<Radiance> ray = Wide<Radiance>{oxrt::checked(thread, mask).load(params.values, i.y, i.x)};
     Wide<oxrt::float3> value_2 = ray.color;
 #line 44 "shader.py"
@@ -143,7 +145,7 @@ void closesthit_white_lanes([[maybe_unused]] Lanes& thread, [[maybe_unused]] Mas
     oxrt::assign(mask, ray.color, oxrt::float3(1.0f));
 }
 
-#line 147 "pipeline.cpp"
+#line 149 "pipeline.cpp"
 void RadianceProgramsLanes::closestHit(Rays& trace, Mask mask, Payload& payload) {
     const Wide<int32_t> program = oxrt::recordPrograms(trace.records, mask, oxrt::SLOT_CLOSESTHIT);
     if (const Mask own = mask & (program == int32_t(number::closesthit_white)); oxrt::any(own))
