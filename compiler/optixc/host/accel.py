@@ -13,6 +13,7 @@ from optixc.errors import InvalidValueError
 from optixc.host import library
 from optixc.host.context import Context
 from optixc.host.inputs import BuildInput, MotionOptions, pack_inputs, take_handle
+from optixc.host.owned import Owned
 from optixc.host.sbt_reach import Parts, below, parts_of
 from optixc.host.whole_numbers import WORD_LIMIT, take_member, take_whole
 
@@ -32,7 +33,7 @@ class TraversableHandle(int):
         return int, (int(self),)
 
 
-class Accel:
+class Accel(Owned):
     """A GAS or IAS. It lives as long as something refers to it (this object, a handle, a parent), or until `destroy()`."""
 
     def __init__(self, context: Context, inputs: Sequence[BuildInput], build_flags: int, motion_options: MotionOptions | None) -> None:

@@ -13,6 +13,7 @@ from typing import Any, Self
 from optixc.enums_program import DeviceProperty
 from optixc.errors import InvalidDeviceContextError, InvalidValueError
 from optixc.host import library
+from optixc.host.owned import Owned
 from optixc.host.properties import property_value
 from optixc.host.whole_numbers import WORD_LIMIT, take_whole
 from optixc.installation import embree_path
@@ -26,7 +27,7 @@ class OptixcWarning(UserWarning):
     """Something works, though not as well as it could; the text says what to do."""
 
 
-class Context:
+class Context(Owned):
     """Owns a runtime context; `validation` checks launches, `threads` bounds launches and builds (None: all cores of the process).
 
     `log_callback(level, tag, message)` gets what the runtime and the compiler have to say, levels 1 (fatal) to 4 (print). An exception

@@ -246,6 +246,12 @@ class StructArray(np.ndarray[Any, Any]):
         """Views and copies point to the same arrays."""
         self.sources = getattr(origin, "sources", ())
 
+    def __reduce__(self) -> Any:
+        """Pickled are the structs: addresses mean nothing in another process. A field that takes this array takes a list of them too."""
+        if len(self.sources) != len(self):
+            raise TypeError("a part of an array of structs cannot be pickled; pickle the structs")
+        return list, (list(self.sources),)
+
 
 def copy_structs(element: FieldType, values: Sequence[Any], where: str) -> StructArray:
     """The bytes of structs, one behind the other."""

@@ -10,6 +10,7 @@ from typing import Any
 from optixc.enums_program import ModuleCompileState, ProgramGroupKind
 from optixc.errors import InvalidOperationError, InvalidValueError, PayloadTypeResolutionFailedError
 from optixc.host import in_flight, structs
+from optixc.host.owned import Owned
 from optixc.host.stack_sizes import StackSizes, sizes_of
 
 _SLOT_PREFIXES = {
@@ -54,7 +55,7 @@ class _NoSuchProgramError(InvalidValueError, KeyError):
     __str__ = InvalidValueError.__str__
 
 
-class Module(Mapping[str, Program]):
+class Module(Owned, Mapping[str, Program]):
     """The programs of a shader file, Python module or list of functions, by name."""
 
     def __init__(self, unit: Any, programs: list[dict[str, Any]], bound_values: Mapping[str, Any] | None = None) -> None:
@@ -90,7 +91,7 @@ class Module(Mapping[str, Program]):
         return len(self._programs)
 
 
-class ProgramGroup:
+class ProgramGroup(Owned):
     """Programs that an SBT record names together; `programs` maps slots (`closesthit` ...) to programs."""
 
     def __init__(self, slots: dict[str, Program | None]) -> None:
@@ -168,7 +169,7 @@ def check_layout(name: str, record: str | None, record_name: str | None, data: A
         )
 
 
-class Record:
+class Record(Owned):
     """An SBT record: a group and its data. Assigning `data`, or a field of it, shows in the next launch."""
 
     def __init__(self, group: ProgramGroup, data: Any) -> None:

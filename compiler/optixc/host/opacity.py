@@ -16,6 +16,7 @@ import numpy as np
 from optixc.enums_scene import OpacityMicromapArrayIndexingMode, OpacityMicromapFlags, OpacityMicromapFormat
 from optixc.errors import InvalidValueError
 from optixc.host import library
+from optixc.host.owned import Owned
 from optixc.host.whole_numbers import WORD_LIMIT, take_member, take_whole
 
 MAX_LEVEL = 12
@@ -55,7 +56,7 @@ class OpacityMicromap:
         return np.asarray(np.bitwise_or.reduce(padded.reshape(-1, per_byte) << shifts, axis=1).astype(np.uint8))
 
 
-class OpacityMicromapArray:
+class OpacityMicromapArray(Owned):
     """Micromaps in the runtime's memory; accels that use them keep them alive."""
 
     def __init__(self, context: Any, data: Words, descs: Words, histogram: Words, flags: int) -> None:

@@ -16,6 +16,7 @@ from optixc.host.array_uses import ArrayUses
 from optixc.host.context import Context
 from optixc.host.graph_report import graph_forms
 from optixc.host.groups import ProgramGroup, Record, check_layout
+from optixc.host.owned import Owned
 from optixc.host.sbt import ShaderBindingTable
 from optixc.host.stack_sizes import StackSizes, nesting_that_fits, stack_for
 
@@ -74,7 +75,7 @@ class PipelineReport:
         return min(around, key=lambda one: one["last"] - one["first"])["name"] if around else None
 
 
-class Pipeline:
+class Pipeline(Owned):
     """Programs compiled together; `launch` runs the raygen record's program once per launch index.
 
     Launches of one pipeline from several threads are serialised. A launch holds everything that it names.
@@ -129,6 +130,7 @@ class Pipeline:
         kept = in_flight.begin()
         try:
             with self._lock:
+                self._live()
                 data, size, table = self._pack(params, sbt)
                 self._last_params = weakref.ref(params) if self._params is not None else None
                 self._run(data, size, table, width, height, depth)
@@ -139,7 +141,7 @@ class Pipeline:
         """What a launch would give the runtime: the pipeline, the bytes of the parameters, their number, the table."""
         self._check_launch(params, sbt)
         with self._lock:
-            return (self._pipeline, *self._pack(params, sbt))
+            return (self._live(), *self._pack(params, sbt))
 
     def _check_launch(self, params: Any, sbt: ShaderBindingTable) -> None:
         context = self._context
@@ -169,7 +171,7 @@ class Pipeline:
     def program_number(self, name: str) -> int:
         """The number of a program in the headers of records; -1 if the pipeline does not have it."""
         found = library.ffi().new("int32_t*")
-        library.check(self._lib.oxrtPipelineFindProgram(self._pipeline, name.encode(), found))
+        library.check(self._lib.oxrtPipelineFindProgram(self._live(), name.encode(), found))
         return int(found[0])
 
     def report(self) -> PipelineReport:
@@ -214,10 +216,8 @@ class Pipeline:
         total = StackSizes()
         for group in self._groups:
             total.include(group.get_stack_size(self))
-        if self._pipeline is None:
-            self._refuse_dead()
         traces = nesting_that_fits(total, continuation_stack_size)
-        library.check(self._lib.oxrtPipelineSetStackDepths(self._pipeline, traces, max_traversable_graph_depth))
+        library.check(self._lib.oxrtPipelineSetStackDepths(self._live(), traces, max_traversable_graph_depth))
 
     def _provide_stack(self, available: int) -> None:
         """Programs that look for overflows must have room to notice them, others for all traces that may nest."""
@@ -251,7 +251,7 @@ class Pipeline:
         for slot, name in names.items():
             setattr(desc, _C_SLOTS.get(slot, slot), name)
         header = ffi.new("char[]", 32)
-        result = self._lib.oxrtSbtRecordPackHeader(self._pipeline, desc, data_size, header)
+        result = self._lib.oxrtSbtRecordPackHeader(self._live(), desc, data_size, header)
         if result:
             raise from_code(result)(f"{group!r} cannot be used with this pipeline: {library.last_message()}")
         return bytes(ffi.buffer(header, 32))
@@ -269,6 +269,7 @@ class Pipeline:
         try:
             result = lib.oxrtLaunchBegin(pipeline, data, size, table, width, height, depth)
             if result:
+                self._live()
                 library.check(result)
             result = lib.oxrtLaunchWait(pipeline, STEP_MS, done)
             while not done[0]:
@@ -280,6 +281,7 @@ class Pipeline:
             self._stop()
             raise
         if result:
+            self._live()
             raise self._failure(result)
 
     def _stop(self) -> None:
@@ -322,6 +324,12 @@ class Pipeline:
             error = ValidationFailureError(wrong)
             error.fault_code = FAULT_BOUND_VALUE
             raise error
+
+    def _live(self) -> Any:
+        """The runtime's pipeline; another thread may have destroyed it, or its context."""
+        if self._pipeline is None or not self._context.is_alive:
+            self._refuse_dead()
+        return self._pipeline
 
     def _refuse_dead(self) -> None:
         # Raises for a destroyed context and in a forked child.

@@ -1,5 +1,6 @@
 """The shader binding table: records laid out as the runtime reads them, packed once a pipeline, changed records again before a launch."""
 
+
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
@@ -11,12 +12,13 @@ from optixc.enums_program import ProgramGroupKind
 from optixc.errors import InvalidValueError
 from optixc.host import library, sbt_check
 from optixc.host.groups import ProgramGroup, Record
+from optixc.host.owned import Owned
 
 HEADER_SIZE = 32
 ALIGNMENT = 16
 
 
-class ShaderBindingTable:
+class ShaderBindingTable(Owned):
     """Raygen and exception record, lists of miss, hit group and callables records; None in a list is an empty record.
 
     Records, and so their data and arrays, live as long as the table.

@@ -1,5 +1,6 @@
 """Textures: pixels that shaders read with `tex2d`, filtered and wrapped."""
 
+
 from __future__ import annotations
 
 import sys
@@ -10,6 +11,7 @@ import numpy.typing as npt
 
 from optixc.errors import InvalidValueError
 from optixc.host import library
+from optixc.host.owned import Owned
 
 _FORMATS = {"float32": 0, "uint8": 1}
 _FILTERS = {"nearest": 0, "linear": 1}
@@ -31,7 +33,7 @@ class TextureHandle(int):
         return int, (int(self),)
 
 
-class Texture2D:
+class Texture2D(Owned):
     """A picture that the programs of every context can read.
 
     `array` is (height, width) or (height, width, 1 to 4), float32 or uint8 (read as 0 to 1), and is copied; its first row is v = 0, its

@@ -1,5 +1,6 @@
 """Transforms as traversables of their own: static, or moving by matrix or SRT keys."""
 
+
 from __future__ import annotations
 
 import sys
@@ -12,11 +13,12 @@ from optixc.host import library
 from optixc.host.accel import TraversableHandle
 from optixc.host.context import Context
 from optixc.host.inputs import MotionOptions, take_handle, take_transform
+from optixc.host.owned import Owned
 
 _SRT_FLOATS = 16
 
 
-class Transform:
+class Transform(Owned):
     """A static, matrix-motion or SRT-motion transform above a child, which it keeps alive; made by the methods of the context."""
 
     def __init__(self, context: Context, kind: str, child: Any, keys: np.ndarray[Any, Any], motion_options: MotionOptions | None) -> None:
