@@ -225,6 +225,29 @@ def test_each_record_has_its_matrix(harness: Harness) -> None:
         assert np.array_equal(found[: 5 * N].reshape(5, N), wanted)
 
 
+def test_gradients_of_a_network_are_those_of_numpy(harness: Harness) -> None:
+    """Whole numbers, so that sums are exact in any order: products, transposed products and accumulators as training uses them."""
+    random, convert = np.random.default_rng(9), harness.context.coop_vec_matrix_convert
+    shapes, starts, gradients = ((18, N), (5, 18)), (0, 3072), (4224, 7296)
+    weights = [random.integers(-2, 3, shape).astype(np.float32) for shape in shapes]
+    memory = np.zeros(8448, np.uint8)
+
+    def described(layout: Layout, number: int, start: int) -> list[ox.CoopVecMatrixDescription]:
+        return [ox.CoopVecMatrixDescription(*shapes[number], start, Element.FLOAT32, layout)]
+
+    for number, matrix in enumerate(weights):
+        convert(described(Layout.ROW_MAJOR, number, 0), matrix, described(Layout.TRAINING_OPTIMAL, number, starts[number]), memory)
+    inputs, wanted = (random.integers(-3, 4, (ROWS, N)).astype(np.float32) for _ in range(2))
+    run(harness, "gradients", params(a=inputs, b=wanted, memory=memory), ROWS)
+
+    hidden = np.maximum(inputs @ weights[0].T, 0.0)
+    delta = hidden @ weights[1].T - wanted[:, :5]
+    back = (delta @ weights[1]) * (hidden > 0.0)
+    for number, expected_sum in enumerate((back.T @ inputs, delta.T @ hidden)):
+        found = convert(described(Layout.TRAINING_OPTIMAL, number, gradients[number]), memory, described(Layout.ROW_MAJOR, number, 0))
+        assert np.array_equal(found.view(np.float32)[: expected_sum.size].reshape(shapes[number]), expected_sum)
+
+
 FAULTS = [
     ("past_the_end", {"offset": 8064}, "192 bytes from offset 8064 end behind the array, which has 8192 bytes", "past the end"),
     ("past_the_end", {"offset": 32}, "offset 32 is no multiple of 64", "past the end"),

@@ -186,3 +186,26 @@ def __raygen__sum_past_the_end():
 @ox.program
 def __raygen__product_past_the_end():
     ox.coop_vec_outer_product_accumulate(Halves(1.0), Halves(1.0), params.memory, params.offset)  # product
+
+
+@ox.program
+def __raygen__gradients():
+    """One step of training of two layers: 24 inputs, 18 hidden values, 5 outputs; gradients stand behind the matrices."""
+    row = ox.get_launch_index().x
+    v, wanted = Floats(), ox.CoopVec[ox.float32, 5]()
+    for j in range(N):
+        v[j] = params.a[row, j]
+    for j in range(5):
+        wanted[j] = params.b[row, j]
+    first = ox.coop_vec_mat_mul(ox.CoopVec[ox.float32, 18], v, params.memory, 0, matrix_layout=CoopVecMatrixLayout.TRAINING_OPTIMAL)
+    hidden = ox.coop_vec_max(first, 0.0)
+    out = ox.coop_vec_mat_mul(
+        ox.CoopVec[ox.float32, 5], hidden, params.memory, 3072, matrix_layout=CoopVecMatrixLayout.TRAINING_OPTIMAL
+    )
+    delta = ox.coop_vec_sub(out, wanted)
+    ox.coop_vec_outer_product_accumulate(delta, hidden, params.memory, 7296)
+    back = ox.coop_vec_mat_mul(
+        ox.CoopVec[ox.float32, 18], delta, params.memory, 3072, matrix_layout=CoopVecMatrixLayout.TRAINING_OPTIMAL, transpose=True
+    )
+    back = ox.coop_vec_mul(back, ox.coop_vec_step(ox.CoopVec[ox.float32, 18](0.5), hidden))
+    ox.coop_vec_outer_product_accumulate(back, v, params.memory, 4224)
