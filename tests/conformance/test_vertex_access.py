@@ -92,6 +92,17 @@ def test_T204_curves_between_two_keys(harness: Harness, kind: int) -> None:
         assert hit["vertexData"][2:4] == pytest.approx([1.0, 0.2])
 
 
+def test_T204_points_and_radii_from_one_array(harness: Harness) -> None:
+    # x, y, z and radius side by side, as they lie in memory of many programs
+    table = np.float32([(*point, radius) for point, radius in zip(POINTS, (0.1, 0.2, 0.3, 0.4), strict=True)])
+    line = ox.BuildInputCurves(ox.PrimitiveType.ROUND_LINEAR, table[:, :3], table[:, 3], np.uint32([0, 9, 1, 9, 2, 9])[::2])
+    balls = ox.BuildInputSpheres(table[:, :3], table[:, 3])
+    for item, kind, expected in ((line, "curve", table[1:3].ravel().tolist()), (balls, "sphere", table[2].tolist())):
+        accel = harness.context.accel_build([item])
+        (result,) = trace(harness, [], [ray((1.9, 0.05, 5), root="it")], [hitgroup(kind=kind)], made={"it": accel})
+        assert closest(result)["vertexData"] == expected
+
+
 @pytest.mark.parametrize(("kind", "begin"), [(QUADRATIC, 0.5), (CUBIC, 1.0), (CATMULL_ROM, 1.0)])
 def test_T195_a_phantom_point_pins_the_beginning(harness: Harness, kind: int, begin: float) -> None:
     # p0 = 2 p1 - p2: cubic B-splines begin at p1 then, as Catmull-Rom curves always do; quadratic ones in the middle of p0 and p1.
