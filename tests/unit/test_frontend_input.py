@@ -43,6 +43,12 @@ def test_deep_nesting_is_a_diagnostic(body: str) -> None:
     assert set(errors_of(HEAD + body)) <= {"OX103", "OX101"}
 
 
+def test_a_long_sum_is_told_where_it_stands() -> None:
+    with pytest.raises(CompileError) as caught:
+        compile_text(HEAD + "    x = 1.0\n    y = " + " + ".join(["x"] * 5_000) + "\n", "shader.py")
+    assert [diagnostic.span.line for diagnostic in caught.value.diagnostics] == [HEAD.count("\n") + 2]
+
+
 def test_nesting_below_the_limit_compiles() -> None:
     compiled("    x = 1.0\n    y = " + " + ".join(["x"] * 150) + "\n")
     compiled("    y = " + "(" * 150 + "1" + ")" * 150 + "\n")
@@ -68,7 +74,7 @@ def test_helpers_with_two_signatures_each_do_not_explode() -> None:
         ("def f(:\n", "OX101"),
         (HEAD + "    x = 1\n\ty = 2\n", "OX101"),
         (HEAD + "    x = 1\0\n", "OX101"),
-        (HEAD + "    x = " + "9" * 5_000 + "\n", "OX101"),
+        (HEAD + "    x = " + "9" * 5_000 + "\n", "OX313"),
         ("", "OX209"),
         (HEAD + "    return 1\n", "OX316"),
         (HEAD + "    break\n", "OX401"),

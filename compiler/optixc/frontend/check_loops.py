@@ -11,7 +11,7 @@ from optixc.frontend.check_operators import check_condition
 from optixc.frontend.context import Context, Loop, describe
 from optixc.frontend.conversions import common_type
 from optixc.frontend.environment import Bound, Environment, Way, join
-from optixc.frontend.resolve_static import static_symbol
+from optixc.frontend.resolve_static import local_names, static_symbol
 from optixc.frontend.symbols import BuiltinName
 from optixc.frontend.weak import CheckType, Invalid, WeakInt, is_integer
 from optixc.ir import types as t
@@ -104,6 +104,9 @@ def _range_of(c: Context, node: ast.For) -> tuple[t.Type, bool] | None:
     """The counter's type, and whether the loop runs at least once for certain; None after a diagnostic."""
     call = node.iter
     symbol = static_symbol(c, call.func) if isinstance(call, ast.Call) and isinstance(call.func, ast.Name) else None
+    if isinstance(call, ast.Call) and isinstance(call.func, ast.Name) and call.func.id in local_names(c):
+        c.error("OX319", call.func, f"`{call.func.id}` is a local here, not a function", "give the local another name")
+        return None
     if not isinstance(call, ast.Call) or symbol != BuiltinName("range"):
         c.error("OX401", call, "a loop runs over range(...) only", "write `for i in range(len(a))` and index")
         return None

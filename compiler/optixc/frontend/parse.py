@@ -9,6 +9,7 @@ from __future__ import annotations
 import ast
 import gc
 import io
+import re
 import sys
 import tokenize
 import warnings
@@ -117,7 +118,12 @@ def _report_syntax_error(source: SourceFile, error: SyntaxError, diagnostics: Di
     column = max((error.offset or 1) - 1, 0)
     end_column = (error.end_offset or 0) - 1 if error.end_lineno == error.lineno else column + 1
     span = Span(source.path, line, column, line, max(end_column, column + 1))
-    if "nested" in (error.msg or ""):
+    if "integer string conversion" in (error.msg or ""):
+        digits = re.search(r"\d{4300,}", source.line(line))
+        if digits is not None:
+            span = Span(source.path, line, digits.start(), line, digits.end())
+        diagnostics.add(source, "OX313", span, "this integer has more than 64 bits", "no type of shaders holds it")
+    elif "nested" in (error.msg or ""):
         diagnostics.add(source, "OX103", span, f"the file is nested too deeply: {error.msg}", "split it into several statements")
     else:
         diagnostics.add(source, "OX101", span, f"the file is not valid Python: {error.msg}")
@@ -139,16 +145,17 @@ def _check_depth(source: SourceFile, tree: ast.Module, diagnostics: Diagnostics)
     """Refuse what our recursive visitors and the passes after them would not stand; walks without recursion."""
     fine = True
     for statement in tree.body:
-        pending: list[tuple[ast.AST, int]] = [(statement, 0)]
+        # Operators have no place of their own: theirs is that of what they stand in.
+        pending: list[tuple[ast.AST, int, ast.AST]] = [(statement, 0, statement)]
         while pending:
-            node, depth = pending.pop()
+            node, depth, place = pending.pop()
+            place = node if hasattr(node, "lineno") else place
             if depth > MAX_DEPTH:
-                anchor = node if hasattr(node, "lineno") else statement
                 message = f"this is nested (or chained) more than {MAX_DEPTH} deep"
-                diagnostics.add(source, "OX103", anchor, message, "split it into several statements")
+                diagnostics.add(source, "OX103", place, message, "split it into several statements")
                 fine = False
                 break
             step = 1 + _chain_length(node)
             for child in ast.iter_child_nodes(node):
-                pending.append((child, depth + step))
+                pending.append((child, depth + step, place))
     return fine
