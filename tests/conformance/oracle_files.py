@@ -45,7 +45,7 @@ class Probe:
     def rays(self) -> list[dict[str, Any]]:
         """The recorded rays with their events; empty where the probe holds counts only, or rays of another form."""
         rays = self.data.get("rays", [])
-        return rays if isinstance(rays, list) and all(isinstance(ray, dict) and "in" in ray and "events" in ray for ray in rays) else []
+        return rays if isinstance(rays, list) and all(isinstance(ray, dict) and "in" in ray for ray in rays) else []
 
     @property
     def hitgroups(self) -> list[dict[str, Any]]:

@@ -62,8 +62,9 @@ def _strange(probe: Probe) -> Iterator[str]:
         yield from _record(record)
     for ray in probe.rays:
         yield from _keys("a ray", ray, RAY)
+        yield from (f"a ray has no {key}" for key in RAY if key not in ray)
         yield from _keys("a ray's input", ray["in"], GIVEN)
-        for event in ray["events"]:
+        for event in ray.get("events", []):
             yield from _word("event", event["ev"], EVENTS)
             yield from _keys("an event", event, EVENT)
 

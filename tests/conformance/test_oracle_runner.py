@@ -118,6 +118,7 @@ def test_rays_of_another_form_are_told() -> None:
         assert not probe.rays
         assert oracle_special.check_of(probe) is None
         assert "rays" in oracle_special.why_not(probe)
+    assert not_understood(Probe("group", {**PLAIN, "rays": [{"in": GIVEN}]}))
 
 
 def test_files_may_be_split_and_one_that_is_none_is_told(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
