@@ -32,7 +32,7 @@ def printer(is_checked: bool = False) -> Expressions:
     pipeline = n.Pipeline((), None, (), (), n.PipelineOptions())
     types = TypeNames((), Scope())
     names = FunctionNames({name: name for name in LOCALS}, "thread", "trace", "params", "hitObject")
-    options = Options(is_checked=is_checked, has_assertions=is_checked, user_exceptions=False, traces_throw=False)
+    options = Options(is_checked=is_checked, checks_elements=is_checked, user_exceptions=False, traces_throw=False)
     return Expressions(ScalarDialect(types, Signatures(pipeline, types, Scope(), {}, {}), names, options))
 
 
@@ -188,7 +188,7 @@ def test_expressions(expression: n.Expr, expected: str) -> None:
 def test_checked_access_names_the_array_and_its_indices() -> None:
     checked = printer(is_checked=True)
     assert checked.text(n.ElementRef(e("image"), (e("a"), e("b")), t.FLOAT32, at(1))) == "oxrt::checked(thread).load(image, a, b)"
-    assert checked.text(n.IndexRef(e("f"), e("a"), t.FLOAT32)) == "f.load(a)"
+    assert checked.text(n.IndexRef(e("f"), e("a"), t.FLOAT32)) == "oxrt::checked(thread).item(f, a)"
     assert checked.text(n.IndexRef(e("f"), number(1, t.INT32), t.FLOAT32)) == "f[1]"
 
 

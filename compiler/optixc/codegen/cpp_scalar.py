@@ -226,7 +226,7 @@ class ScalarFunction:
             self._writer.line(leave)
 
     def _assert(self, statement: Assert) -> None:
-        if self._options.has_assertions:
+        if self._options.is_checked:
             values = [self._expressions.text(value) for value in statement.values]
             condition = self._expressions.text(statement.condition)
             self._writer.line(assertion_call(statement, [self._names.thread], condition, values), statement.span)

@@ -85,7 +85,7 @@ class ScalarCalls:
 
     def guard(self, place: Expr) -> str | None:
         """The condition under which a place exists, in checked builds; None where it always does."""
-        if not self._options.is_checked:
+        if not self._options.checks_elements:
             return None
         conditions = []
         node = place
@@ -94,7 +94,7 @@ class ScalarCalls:
                 indices = ", ".join(self._expressions.text(index) for index in node.indices)
                 conditions.append(f"oxrt::checked({self._names.thread}).contains({self._expressions.text(node.array)}, {indices})")
                 break
-            if isinstance(node, IndexRef) and not isinstance(node.index, Literal):
+            if self._options.is_checked and isinstance(node, IndexRef) and not isinstance(node.index, Literal):
                 base_text, index = self._expressions.place(node.base), self._expressions.text(node.index)
                 checked = f"oxrt::checked({self._names.thread}).containsItem({base_text}, {index})"
                 conditions.append(f"{base_text}.contains({index})" if isinstance(node.base.type, CoopVec) else checked)
@@ -121,7 +121,7 @@ class ScalarCalls:
         """None for a call that does nothing in this pipeline."""
         row = INTRINSICS[statement.name]
         if statement.name in COOP_VEC_NAMES:
-            spans = checked_spans(statement, [self._names.thread]) if self._options.is_checked else "oxrt::anySpan"
+            spans = checked_spans(statement, [self._names.thread]) if self._options.checks_elements else "oxrt::anySpan"
             return memory_call(statement, self._types, spans, [self._expressions.text(value) for value in values_of(statement)])
         arguments = [self._expressions.text(argument) for argument in statement.arguments]
         if statement.name == REPORT:

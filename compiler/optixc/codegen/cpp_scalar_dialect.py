@@ -34,7 +34,7 @@ class ScalarDialect:
 
     def element(self, node: ElementRef, array: Code, indices: tuple[Code, ...]) -> Code:
         places = ", ".join(index.text for index in indices)
-        if self._options.is_checked:
+        if self._options.checks_elements:
             return Code(f"oxrt::checked({self._names.thread}).load({array.text}, {places})")
         return Code(f"{within(array, PRIMARY)}.at({places})")
 

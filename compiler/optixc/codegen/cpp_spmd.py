@@ -437,7 +437,7 @@ class LaneFunction:
         self._writer.line(f"{self._mask} = {f'oxrt::without({self._mask}, {gone})' if gone is not None else 'false'};", statement.span)
 
     def _assert(self, statement: Assert) -> None:
-        if self._options.has_assertions:
+        if self._options.is_checked:
             values = [self._expressions.text(value) for value in statement.values]
             condition = self._expressions.wide(statement.condition)
             self._writer.line(assertion_call(statement, [self._names.thread, self._mask], condition, values), statement.span)

@@ -68,13 +68,13 @@ class LaneCalls:
         indices = ", ".join(self._expressions.text(index) for index in element.indices)
         if target is element:
             wide = self._expressions.wide(value)
-            if self._options.is_checked:
+            if self._options.checks_elements:
                 return f"oxrt::checked({self._names.thread}, {self._mask}).store({wide}, {array}, {indices});"
             return f"oxrt::store<LANES>({self._mask}, {wide}, {array}, {indices});"
         part = self._part(target, element)
         setting = f"[&, value = {self._expressions.wide(value)}](auto& element, int lane) {{ oxrt::extractLane({part}, value, lane); }}"
         inside = f"oxrt::checked({self._names.thread}, {self._mask}).inside({array}, {indices})"
-        return f"oxrt::eachElement<LANES>({inside if self._options.is_checked else self._mask}, {setting}, {array}, {indices});"
+        return f"oxrt::eachElement<LANES>({inside if self._options.checks_elements else self._mask}, {setting}, {array}, {indices});"
 
     def _part(self, place: Expr, element: ElementRef) -> str:
         """A part of the scalar `element` of one lane."""
@@ -173,7 +173,7 @@ class LaneCalls:
         """Memory of cooperative vectors; what all lanes read alike is read once."""
         thread = self._names.thread
         varies = row.effect is not Effect.READS or any(self._expressions.lanes.varies(argument) for argument in statement.arguments)
-        if self._options.is_checked:
+        if self._options.checks_elements:
             state = [thread, self._mask] if varies else [f"{thread}.atLane(oxrt::anyLane({self._mask}))"]
             spans = checked_spans(statement, state)
         else:
@@ -197,7 +197,7 @@ class LaneCalls:
     def _existing(self, statement: CallIntrinsic) -> str:
         """The lanes that make a call: where elements are checked, those whose element there is."""
         element = statement.arguments[0] if statement.arguments else None
-        if not isinstance(element, ElementRef) or not self._options.is_checked:
+        if not isinstance(element, ElementRef) or not self._options.checks_elements:
             return self._mask
         where = ", ".join(self._expressions.text(part) for part in (element.array, *element.indices))
         return f"oxrt::checked({self._names.thread}, {self._mask}).inside({where})"

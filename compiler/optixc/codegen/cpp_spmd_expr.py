@@ -125,10 +125,10 @@ class LaneDialect:
     def element(self, node: ElementRef, array: Code, indices: tuple[Code, ...]) -> Code:
         places = ", ".join(index.text for index in indices)
         if self.varies(node):
-            if self._options.is_checked:
+            if self._options.checks_elements:
                 return Code(f"oxrt::checked({self._names.thread}, {self.mask}).load({array.text}, {places})")
             return Code(f"oxrt::load<LANES>({self.mask}, {array.text}, {places})")
-        if self._options.is_checked:
+        if self._options.checks_elements:
             lane = f"{self._names.thread}.atLane(oxrt::anyLane({self.mask}))"
             return Code(f"oxrt::checked({lane}).load({array.text}, {places})")
         if self.is_conditional:

@@ -62,10 +62,14 @@ class Needs:
 
 @dataclass(frozen=True)
 class Options:
-    """What of the pipeline's options changes what functions need."""
+    """What of the pipeline's options changes what functions need.
+
+    Memory is looked at before it is touched wherever `checks_elements` is set; assertions and items of fixed arrays, vectors and matrices
+    in builds with debug or validation only.
+    """
 
     is_checked: bool
-    has_assertions: bool
+    checks_elements: bool
     user_exceptions: bool
     traces_throw: bool
     uses_motion: bool = False
@@ -75,8 +79,8 @@ def options_of(pipeline: Pipeline) -> Options:
     options = pipeline.options
     throwing = bool(options.exception_flags & EXCEPTION_FLAG_USER)
     return Options(
-        is_checked=options.checks_bounds or options.debug or options.validation,
-        has_assertions=options.debug or options.validation,
+        is_checked=options.debug or options.validation,
+        checks_elements=options.checks_bounds or options.debug or options.validation,
         user_exceptions=throwing,
         uses_motion=options.uses_motion_blur,
         traces_throw=throwing or bool(options.exception_flags & (EXCEPTION_FLAG_TRACE_DEPTH | EXCEPTION_FLAG_STACK_OVERFLOW)),
@@ -137,7 +141,7 @@ def _of_statement(statement: Stmt, options: Options) -> Needs:
         case Print():
             return Needs(thread=True)
         case Assert():
-            return Needs(thread=options.has_assertions)
+            return Needs(thread=options.is_checked)
         case While() | ForRange():
             return Needs(thread=polls(statement))
         case CallIntrinsic(name=name):
@@ -151,7 +155,7 @@ def _of_expression(expression: Expr, options: Options) -> Needs:
         case ParamsRef():
             return Needs(thread=True, params=True)
         case ElementRef():
-            return Needs(thread=options.is_checked)
+            return Needs(thread=options.checks_elements)
         case IndexRef(index=index) if not isinstance(index, Literal):
             return Needs(thread=options.is_checked)
         case IntrinsicCall(name=name):
@@ -165,7 +169,7 @@ def _of_intrinsic(name: str, options: Options) -> Needs:
     if name == THROW:
         return Needs(thread=True, throws=True) if options.user_exceptions else Needs()
     state = row.state
-    is_checked_memory = options.is_checked and name in COOP_VEC_NAMES and row.effect is not Effect.PURE
+    is_checked_memory = options.checks_elements and name in COOP_VEC_NAMES and row.effect is not Effect.PURE
     return Needs(
         thread=state is State.THREAD or is_checked_memory,
         ray=state is State.RAY,
