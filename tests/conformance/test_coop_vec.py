@@ -256,6 +256,8 @@ FAULTS = [
     ("load_past_the_end", {"offset": 8}, "offset 8 is no multiple of 16", "load"),
     ("sum_past_the_end", {"offset": 84}, "48 bytes from offset 84 end behind the array, which has 128 bytes", "sum"),
     ("sum_past_the_end", {"offset": 2}, "offset 2 is no multiple of 4", "sum"),
+    ("element_past_the_end", {"offset": 10}, "index out of range (24), there are 24 items", "element"),
+    ("shared_element_past_the_end", {"offset": 30}, "index out of range (30), there are 24 items", "shared element"),
     ("product_past_the_end", {"offset": 5504}, "3072 bytes from offset 5504 end behind the array, which has 8192 bytes", "product"),
 ]
 

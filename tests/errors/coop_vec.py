@@ -67,6 +67,7 @@ def __raygen__memory():
     ox.coop_vec_outer_product_accumulate(H4(), H8(), params.bytes, matrix_layout=OPTIMAL)  # E[OX322]: layout TRAINING_OPTIMAL
     d = ox.coop_vec_get_matrix_size(params.n, 4, CoopVecElemType.FLOAT16)  # E[OX322]: `n` must be a constant
     e = ox.coop_vec_get_matrix_size(4, 4, CoopVecElemType.FLOAT16, CoopVecMatrixLayout.ROW_MAJOR, 4)  # E[OX322]: less than the 8 bytes
+    h = ox.coop_vec_get_matrix_size(100000, 100000, CoopVecElemType.FLOAT32)  # E[OX322]: more than 32 bits count
     f = ox.coop_vec_get_matrix_size(4, 4, 77)  # E[OX322]: 77 is no element type
     g = ox.coop_vec_reduce_sum_accumulate(H4(), params.bytes)  # E[OX321]: gives no value
 

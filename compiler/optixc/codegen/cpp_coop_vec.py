@@ -1,7 +1,7 @@
 """Calls on cooperative vectors that read or write memory, as C++ text for both emitters.
 
 What OptiX has as template arguments is one here too. The first argument says which memory may be touched: all of it (`oxrt::anySpan`),
-or only what lies inside of the array (checked builds); over lanes it carries the mask.
+or only what lies inside of the array, where indices are checked; over lanes it carries the mask.
 """
 
 from __future__ import annotations

@@ -30,7 +30,7 @@ from optixc.ir.nodes import (
     Trace,
     is_reference_type,
 )
-from optixc.ir.types import CoopVec, Struct
+from optixc.ir.types import Struct
 from optixc.ir.walk import expressions
 
 _FLAGS_ARGUMENT = 7
@@ -96,8 +96,7 @@ class ScalarCalls:
                 break
             if self._options.is_checked and isinstance(node, IndexRef) and not isinstance(node.index, Literal):
                 base_text, index = self._expressions.place(node.base), self._expressions.text(node.index)
-                checked = f"oxrt::checked({self._names.thread}).containsItem({base_text}, {index})"
-                conditions.append(f"{base_text}.contains({index})" if isinstance(node.base.type, CoopVec) else checked)
+                conditions.append(f"oxrt::checked({self._names.thread}).containsItem({base_text}, {index})")
             base = getattr(node, "base", None)
             if base is None:
                 break

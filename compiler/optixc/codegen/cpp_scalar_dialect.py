@@ -11,7 +11,7 @@ from optixc.ir.intrinsic_rows import INTRINSICS
 from optixc.ir.intrinsic_rows_coop_vec import COOP_VEC_NAMES
 from optixc.ir.intrinsics import State
 from optixc.ir.nodes import ElementRef, Expr, HelperCall, IndexRef, IntrinsicCall, Literal, Local, Logical, Select
-from optixc.ir.types import CoopVec, Type
+from optixc.ir.types import Type
 
 
 class ScalarDialect:
@@ -39,8 +39,6 @@ class ScalarDialect:
         return Code(f"{within(array, PRIMARY)}.at({places})")
 
     def index(self, node: IndexRef, base: Code, index: Code) -> Code:
-        if self._options.is_checked and isinstance(node.base.type, CoopVec) and not isinstance(node.index, Literal):
-            return Code(f"{within(base, PRIMARY)}.load({index.text})")
         if self._options.is_checked and not isinstance(node.index, Literal):
             return Code(f"oxrt::checked({self._names.thread}).item({base.text}, {index.text})")
         return Code(f"{within(base, PRIMARY)}[{index.text}]")

@@ -31,7 +31,6 @@ from optixc.ir.nodes import (
     is_reference_type,
 )
 from optixc.ir.types import (
-    CoopVec,
     FixedArray,
     Struct,
 )
@@ -112,7 +111,7 @@ class LaneCalls:
         conditions = []
         node = place
         while self._options.is_checked and isinstance(node, FieldRef | ComponentRef | IndexRef):
-            if isinstance(node, IndexRef) and not isinstance(node.index, Literal) and not isinstance(node.base.type, CoopVec):
+            if isinstance(node, IndexRef) and not isinstance(node.index, Literal):
                 item = f"{self._expressions.place(node.base)}, {self._expressions.text(node.index)}"
                 conditions.append(f"oxrt::any(oxrt::checked({self._names.thread}, {self._mask}).insideItems({item}))")
             node = node.base

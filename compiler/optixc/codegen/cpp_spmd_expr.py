@@ -32,7 +32,6 @@ from optixc.ir.nodes import (
     Select,
 )
 from optixc.ir.types import (
-    CoopVec,
     Scalar,
     ScalarKind,
     Tuple,
@@ -136,9 +135,9 @@ class LaneDialect:
         return Code(f"{within(array, PRIMARY)}.at({places})")
 
     def index(self, node: IndexRef, base: Code, index: Code) -> Code:
-        if self._options.is_checked and not isinstance(node.index, Literal) and not isinstance(node.base.type, CoopVec):
+        if self._options.is_checked and not isinstance(node.index, Literal):
             return Code(f"oxrt::checked({self._names.thread}, {self.mask}).item({base.text}, {index.text})")
-        if self.varies(node.index) or (self._options.is_checked and not isinstance(node.index, Literal)):
+        if self.varies(node.index):
             return Code(f"oxrt::loadItem<LANES>({base.text}, {index.text})")
         return Code(f"{within(base, PRIMARY)}[{index.text}]")
 

@@ -8,7 +8,7 @@ from collections.abc import Collection
 from optixc.codegen.cpp_spmd_expr import LaneExpressions
 from optixc.codegen.cpp_types import field_name
 from optixc.ir.nodes import ComponentRef, ElementRef, Expr, FieldRef, IndexRef, Literal
-from optixc.ir.types import CoopVec, FixedArray, Struct
+from optixc.ir.types import FixedArray, Struct
 
 
 class ItemLoops:
@@ -34,7 +34,7 @@ class ItemLoops:
             case IndexRef(base=base, index=index):
                 inner, position = self.place(base), self._expressions.text(index)
                 if self._expressions.lanes.varies(index):
-                    return self._item(inner, position, bool(self._checked) and not isinstance(base.type, CoopVec))
+                    return self._item(inner, position, bool(self._checked))
                 if self._checked and isinstance(base.type, FixedArray) and not isinstance(index, Literal):
                     return f"{self._checked.format(self.mask)}.itemPlace({inner}, {position})"
                 return f"{inner}[{position}]"

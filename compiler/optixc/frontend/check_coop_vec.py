@@ -316,9 +316,12 @@ def _check_matrix_size(c: Context, node: ast.Call, row: Intrinsic, given: Given)
     problem = layouts.stride_problem(n, k, element, layout, stride)
     if problem is None and element in layouts.FLOAT8 and layout not in layouts.OPTIMAL:
         problem = f"a matrix of {element.name} has an optimal layout, not {layout.name}"
+    size = layouts.matrix_size(n, k, element, layout, stride)
+    if problem is None and size > _MAX_OFFSET:
+        problem = f"this matrix has {size} bytes, which are more than 32 bits count"
     if problem is not None:
         return c.error("OX322", node, problem, "")
-    return ExprInfo(t.UINT32, constant=layouts.matrix_size(n, k, element, layout, stride))
+    return ExprInfo(t.UINT32, constant=size)
 
 
 _RULES: dict[str, Callable[[Context, ast.Call, Intrinsic, Given], ExprInfo]] = {

@@ -138,12 +138,13 @@ __attribute__((noinline, cold)) void faultOfIndex(OxrtThread& thread, Place plac
 template <class T, int SIZE> OXRT_INLINE constexpr int itemsOf(const FixedArray<T, SIZE>&) { return SIZE; }
 template <class T, int N> OXRT_INLINE constexpr int itemsOf(const Vector<T, N>&) { return N; }
 template <class T, int R, int C> OXRT_INLINE constexpr int itemsOf(const Matrix<T, R, C>&) { return R; }
+template <class T, int N, class X> OXRT_INLINE constexpr int itemsOf(const CoopVec<T, N, X>&) { return N; }
 template <class I> void faultOfItem(OxrtThread& thread, Place place, I index, int count) {
     faultWithValues(thread, OXRT_FAULT_BOUNDS, "index out of range (\1), there are \1 items", place, index, count);
 }
 
 /* Access with a check: an index out of range reads zero, or has `contains` say no, and is a fault. Items are those of fixed arrays,
-   vectors and matrices; where there is none, `itemPlace` is a place that nobody looks at. */
+   vectors of both kinds and matrices; where there is none, `itemPlace` is a place that nobody looks at. */
 struct Checked {
     OxrtThread& thread;
     Place place;

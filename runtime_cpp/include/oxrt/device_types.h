@@ -59,14 +59,12 @@ template <class T, int SIZE> struct FixedArray {
 
 /* ---- cooperative vectors ------------------------------------------------------------------------------------------------------- */
 
-/* N numbers that T holds; X is T itself, or lanes of what T widens to. Out of range as in fixed arrays. See coop_vec.h. */
+/* N numbers that T holds; X is T itself, or lanes of what T widens to. See coop_vec.h. */
 template <class T, int N, class X = T> struct CoopVec {
     X items[N];
 
-    OXRT_INLINE bool contains(int64_t i) const { return uint64_t(i) < uint64_t(N); }
     OXRT_INLINE X& operator[](int64_t i) { return items[i]; }
     OXRT_INLINE const X& operator[](int64_t i) const { return items[i]; }
-    OXRT_INLINE X load(int64_t i) const { return contains(i) ? items[i] : X{}; }
 };
 
 template <class V> inline constexpr int coopVecSize = 0;

@@ -189,6 +189,19 @@ def __raygen__product_past_the_end():
 
 
 @ox.program
+def __raygen__element_past_the_end():
+    v = Halves(1.0)
+    params.out[0, 0, 0] = ox.float64(v[int(params.offset) + int(ox.get_launch_index().x)])  # element
+
+
+@ox.program
+def __raygen__shared_element_past_the_end():
+    v = Halves(1.0)
+    v[int(params.offset)] = 2.0  # shared element
+    params.out[0, 0, 0] = ox.float64(v[0])
+
+
+@ox.program
 def __raygen__gradients():
     """One step of training of two layers: 24 inputs, 18 hidden values, 5 outputs; gradients stand behind the matrices."""
     row = ox.get_launch_index().x
