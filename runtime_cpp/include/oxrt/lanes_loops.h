@@ -96,9 +96,11 @@ __attribute__((noinline, cold)) void faultOfLanes(LanesThread<W>& thread, Lanes<
 template <int W, class A, class... I>
 OXRT_INLINE Lanes<bool, W> insideAt(LanesThread<W>& thread, Lanes<bool, W> mask, Place place, const A& array, I... indices) {
     const Lanes<bool, W> found = mask & inside<W>(array, indices...);
-    if (const Lanes<bool, W> outside = without(mask, found); __builtin_expect(any(outside), 0))
+    if (const Lanes<bool, W> outside = without(mask, found); __builtin_expect(any(outside), 0)) {
         faultOfLanes<W>(thread, outside, place, array, indices...);
-    return found;
+        return found;
+    }
+    return mask; /* not `found`: loads need not wait for the comparison */
 }
 
 /* The lanes of the mask whose index names an item; a fault for the first whose does not. */
