@@ -20,8 +20,9 @@ import numpy as np
 
 from optixc import passes, toolchain
 from optixc.cache import Cache
-from optixc.codegen.cpp_types import payload_words
+from optixc.codegen.cpp_types import payload_words, word_count
 from optixc.codegen.emit import emit as emit_cpp
+from optixc.codegen.payload_use import used_words
 from optixc.codegen.program_classes import constant, payload_of, trace_depth, traces_of
 from optixc.codegen.word_limits import first_excess
 from optixc.errors import (
@@ -279,7 +280,7 @@ def _describe_place(function: nodes.Function) -> Json:
     return {"name": function.source_name, "path": span.path, "first": span.line, "last": last}
 
 
-def _describe_trace(trace: nodes.Trace) -> Json:
+def _describe_trace(pipeline: nodes.Pipeline, trace: nodes.Trace) -> Json:
     """What of a trace decides the records that it reaches; None for what is no constant."""
     sbt_offset, sbt_stride, miss = (constant(argument) for argument in trace.arguments[8:11])
     return {
@@ -290,6 +291,8 @@ def _describe_trace(trace: nodes.Trace) -> Json:
         "miss": miss,
         "payload": _payload_text(trace.payload_type),
         "payload_name": trace.payload_type.name if trace.payload_type is not None else None,
+        "words": word_count(trace.payload_type) if trace.payload_type is not None else 0,
+        "used_words": sorted(used_words(pipeline, trace.payload_type)) if trace.payload_type is not None else [],
     }
 
 
@@ -302,7 +305,8 @@ def _describe_use(use: ArrayUse) -> Json:
 def _trace_text(use: Json) -> str:
     given = (("sbt_offset", "sbt_offset"), ("sbt_stride", "sbt_stride"), ("miss", "miss_sbt_index"))
     words = ", ".join(f"{name} {use[key] if use[key] is not None else 'varies'}" for key, name in given)
-    carried = f"payload {use['payload_name']} of {len(use['payload'].split(','))} words" if use["payload"] else "no payload"
+    used = "" if len(use["used_words"]) == use["words"] else f", {len(use['used_words'])} of them used by programs"
+    carried = f"payload {use['payload_name']} of {use['words']} words{used}" if use["payload"] else "no payload"
     return f"{use['place']}: {use['name']}, {words}, {carried}"
 
 
@@ -325,7 +329,7 @@ def _describe_params(params: t.Struct | None) -> Json | None:
 
 
 def _describe(emitted: Emitted, options: CompileOptions, compiler: toolchain.Compiler) -> Json:
-    uses = [_describe_trace(trace) for _, trace in traces_of(emitted.pipeline) if trace.arguments]
+    uses = [_describe_trace(emitted.pipeline, trace) for _, trace in traces_of(emitted.pipeline) if trace.arguments]
     return {
         "compiler": str(compiler),
         "programs": [program.name for program in emitted.pipeline.programs],
