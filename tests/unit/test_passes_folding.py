@@ -166,7 +166,7 @@ def test_features_name_the_line_that_asked() -> None:
     module = pinhole_module()
     found = features(n.Pipeline(module.structs, module.params, (), module.programs, n.PipelineOptions()))
     described = [feature.describe() for feature in found.compiled_in]
-    assert described == ["miss programs: shader.py:14", "closesthit programs: shader.py:9"]
+    assert described == ["miss programs: shader.py:14", "closesthit programs: shader.py:9", "array bounds checks: shader.py:6"]
     assert not found.has("callables")
 
 
