@@ -95,6 +95,23 @@ def __raygen__rays():
 
 
 @ox.program
+def __raygen__branches():
+    x = float(ox.get_launch_index().x)
+    if x > 100.0 or (x - 6.0) / (x - 6.0) > 3.0:
+        params.out[0] = float3(x)
+    if not (x - 5.0) / (x - 5.0) > 3.0 and x > 200.0:  # branches
+        params.out[0] = float3(x)
+
+
+@ox.program
+def __raygen__loops():
+    x = float(ox.get_launch_index().x)
+    y = 0.0
+    while (x - 3.0) / (x - 3.0) > y:  # loops
+        y += 1.0
+
+
+@ox.program
 def __raygen__stops():
     k = int(ox.get_launch_index().x) + 40
     breakpoint()  # stops
@@ -120,6 +137,8 @@ FAILURES = {
     "fields": ("ray.color.y is NaN (x = 4)", 4),
     "stores": ("an element of params.out is NaN (x = 7)", 7),
     "helper": ("the result of ratio is NaN (a = 0, b = 0)", 2),
+    "branches": ("(x - 5.0) / (x - 5.0) in a condition is NaN (x = 5)", 5),
+    "loops": ("(x - 3.0) / (x - 3.0) in a condition is NaN (x = 3)", 3),
     "rays": ("direction of trace is NaN (x = 0)", 0),
 }
 PROGRAM_OF = {"helper": "results"}

@@ -1,6 +1,7 @@
 """What checked builds look at: the values that a failing assertion shows, and floats that became NaN, on request.
 
-NaN traps look where a float gets a name or goes on: assignments, stores to memory, results of functions, arguments of traces.
+NaN traps look where a float gets a name, goes on or decides: assignments, stores to memory, results of functions and callables, arguments
+of traces, conditions.
 """
 
 from __future__ import annotations
@@ -14,12 +15,14 @@ from optixc.ir.nodes import (
     Assign,
     Binary,
     BinaryOp,
+    CallCallable,
     ComponentRef,
     Convert,
     ElementRef,
     Expr,
     FieldRef,
     Function,
+    If,
     Literal,
     Local,
     LocalRef,
@@ -31,6 +34,7 @@ from optixc.ir.nodes import (
     Trace,
     Unary,
     UnaryOp,
+    While,
 )
 from optixc.ir.types import BOOL, FixedArray, Matrix, Scalar, ScalarKind, Struct, Type, Vector
 from optixc.ir.walk import Body, map_blocks, operands, place_root
@@ -104,6 +108,15 @@ class _Traps:
                         argument = yield from self._name(argument, f"{name} of {statement.name} is NaN", span)
                     checked.append(argument)
                 yield replace(statement, arguments=(*checked, *arguments[len(checked) :]))
+            case If(condition=condition, span=span):
+                yield from _trap_condition(condition, span)
+                yield statement
+            case While(condition_body=before, condition=condition, span=span):
+                yield replace(statement, condition_body=(*before, *_trap_condition(condition, span)))
+            case CallCallable(target=Local() as target, is_direct=is_direct, span=span) if _is_float(target.type):
+                yield statement
+                name = "direct_call" if is_direct else "continuation_call"
+                yield from _trap(LocalRef(target), f"the result of {name} is NaN", statement.index, span)
             case _:
                 yield statement
 
@@ -124,6 +137,22 @@ def _trap(place: Expr, message: str, value: Expr, span: Span) -> Iterator[Stmt]:
     # A number equals itself; vectors are equal where all components are.
     condition = Binary(BinaryOp.EQUAL, place, place, BOOL, span)
     yield Assert(condition, message, span, _unique(_simple_parts(value)))
+
+
+def _trap_condition(condition: Expr, span: Span) -> Iterator[Stmt]:
+    """Traps of the floats that a condition compares in any case; what `and` and `or` may leave out is not looked at."""
+    for side in _first_compared(condition):
+        yield from _trap(side, f"{author_text(side)} in a condition is NaN", side, span)
+
+
+def _first_compared(condition: Expr) -> Iterator[Expr]:
+    match condition:
+        case Logical(left=left):
+            yield from _first_compared(left)
+        case Unary(op=UnaryOp.NOT, operand=operand):
+            yield from _first_compared(operand)
+        case Binary(op=op, left=left, right=right) if op in _COMPARISONS:
+            yield from (side for side in (left, right) if _can_be_nan(side))
 
 
 def _can_be_nan(value: Expr) -> bool:
@@ -223,8 +252,14 @@ def author_text(expression: Expr) -> str:
         case Convert(operand=operand):
             return author_text(operand)
         case Unary(op=op, operand=operand):
-            return f"{op.value}{author_text(operand)}"
+            return f"{op.value}{_operand_text(operand, None)}"
         case Binary(op=op, left=left, right=right):
-            return f"{author_text(left)} {op.value} {author_text(right)}"
+            return f"{_operand_text(left, op)} {op.value} {_operand_text(right, None)}"
         case _:
             return "a value"
+
+
+def _operand_text(operand: Expr, same: BinaryOp | None) -> str:
+    """In parentheses where it is an operation itself, other than the one before."""
+    text = author_text(operand)
+    return f"({text})" if isinstance(operand, Binary) and operand.op is not same else text

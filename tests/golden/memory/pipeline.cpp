@@ -29,7 +29,7 @@ struct Params {
 
 /* Program numbers, as SBT records hold them. */
 namespace number {
-enum : int32_t { raygen_store };
+enum : int32_t { raygen_store, raygen_items };
 }
 
 #line 33 "shader.py"
@@ -80,16 +80,48 @@ void raygen_store(OxrtThread& thread) {
 }
 
 #line 83 "pipeline.cpp"
+// Items that a helper changes, by indices that differ and that do not; parts of storage vectors; shifts of literals.
+#line 58 "shader.py"
+void raygen_items(OxrtThread& thread) {
+    const Params& params = oxrt::launchParams<Params>(thread);
+    uint32_t i = oxrt::getLaunchIndex(thread).x;
+    oxrt::FixedArray<Photon, 2> photons = oxrt::FixedArray<Photon, 2>{};
+    oxrt::FixedArray<oxrt::FixedArray<uint32_t, 2>, 4> grid = oxrt::FixedArray<oxrt::FixedArray<uint32_t, 2>, 4>{};
+    if (grid.contains(i & 3u) && grid[i & 3u].contains((i >> 2u) & 1u))
+#line 63 "shader.py"
+        grid[i & 3u][(i >> 2u) & 1u] = oxrt::shiftLeft(1u, i & 31u);
+    float result = next_float(photons[i & 1u]);
+#line 64 "shader.py"
+    float result_2 = next_float(photons[0]);
+#line 64 "shader.py"
+    float x = result + result_2;
+    photons[1].flags = grid[2].load(i & 1u) & 4294967291u;
+    if (oxrt::checked(thread).contains(params.halves, 0, i))
+#line 66 "shader.py"
+        params.halves.at(0, i).y = x;
+    if (oxrt::checked(thread).contains(params.sums, i))
+#line 67 "shader.py"
+        params.sums.at(i) = photons.load(i & 1u).position.x;
+}
+
+#line 108 "pipeline.cpp"
 void run_raygen_store(OxrtThread* thread, const OxrtTile* tile) {
     oxrt::forEachIndex(*thread, *tile, [thread] {
         raygen_store(*thread);
     });
 }
 
+void run_raygen_items(OxrtThread* thread, const OxrtTile* tile) {
+    oxrt::forEachIndex(*thread, *tile, [thread] {
+        raygen_items(*thread);
+    });
+}
+
 const OxrtProgram programs[] = {
     {"__raygen__store", OXRT_KIND_RAYGEN, 0, run_raygen_store},
+    {"__raygen__items", OXRT_KIND_RAYGEN, 0, run_raygen_items},
 };
-const OxrtPipelineVariant variants[] = {{oxrt::BUILT_ISA, 1, programs, 1}};
+const OxrtPipelineVariant variants[] = {{oxrt::BUILT_ISA, 1, programs, 2}};
 static_assert(sizeof(Params) == 112);
 
 }  // namespace

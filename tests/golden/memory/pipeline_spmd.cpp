@@ -72,7 +72,7 @@ struct ParamsWide {
 
 /* Program numbers, as SBT records hold them. */
 namespace number {
-enum : int32_t { raygen_store };
+enum : int32_t { raygen_store, raygen_items };
 }
 
 #line 33 "shader.py"
@@ -81,7 +81,10 @@ float next_float(Photon& state) {
     return state.position.x;
 }
 
+#line 85 "pipeline.cpp"
+Wide<float> next_float_lanes([[maybe_unused]] Lanes& thread, [[maybe_unused]] Mask mask, Wide<Photon>& state);
 
+#line 39 "shader.py"
 void raygen_store_lanes([[maybe_unused]] Lanes& thread, [[maybe_unused]] Mask mask) {
     const Params& params = oxrt::launchParams<Params>(thread);
 #line 40 "shader.py"
@@ -127,17 +130,55 @@ void raygen_store_lanes([[maybe_unused]] Lanes& thread, [[maybe_unused]] Mask ma
     oxrt::checked(thread, mask).store(oxrt::spread<16>(copied), params.store.photons, 0);
 }
 
-#line 131 "pipeline.cpp"
+#line 33 "shader.py"
+Wide<float> next_float_lanes([[maybe_unused]] Lanes& thread, [[maybe_unused]] Mask mask, Wide<Photon>& state) {
+    oxrt::assign(mask, state.position.x, state.position.x + 0.5f);
+    return state.position.x;
+}
+
+#line 140 "pipeline.cpp"
+// Items that a helper changes, by indices that differ and that do not; parts of storage vectors; shifts of literals.
+#line 58 "shader.py"
+void raygen_items_lanes([[maybe_unused]] Lanes& thread, [[maybe_unused]] Mask mask) {
+    const Params& params = oxrt::launchParams<Params>(thread);
+    Wide<uint32_t> i = oxrt::getLaunchIndex(thread).x;
+    Wide<oxrt::FixedArray<Photon, 2>> photons = oxrt::spread<16>(oxrt::FixedArray<Photon, 2>{});
+    Wide<oxrt::FixedArray<oxrt::FixedArray<uint32_t, 2>, 4>> grid = oxrt::spread<16>(oxrt::FixedArray<oxrt::FixedArray<uint32_t, 2>, 4>{});
+    oxrt::eachItem(mask, grid, i & 3u, [&, value = oxrt::shiftLeft(1u, i & 31u)](auto& item, Mask own) { oxrt::eachItem(own, item,
+            (i >> 2u) & 1u, [&](auto& item_2, Mask own_2) { oxrt::assign(own_2, item_2, value); }); });
+#line 64 "shader.py"
+    Wide<float> result_{};
+#line 64 "shader.py"
+    oxrt::eachItem(mask, photons, i & 1u, [&](auto& item, Mask own) { oxrt::assign(own, result_, next_float_lanes(thread, own, item)); });
+#line 64 "shader.py"
+    Wide<float> result_2 = next_float_lanes(thread, mask, photons[0]);
+#line 64 "shader.py"
+    Wide<float> x = result_ + result_2;
+    photons[1].flags = oxrt::convert<uint8_t>(oxrt::loadItem<LANES>(grid[2], i & 1u) & 4294967291u);
+    oxrt::eachElement<LANES>(oxrt::checked(thread, mask).inside(params.halves, 0, i), [&, value = x](auto& element,
+            int lane) { oxrt::extractLane(element.y, value, lane); }, params.halves, 0, i);
+#line 67 "shader.py"
+    oxrt::checked(thread, mask).store(oxrt::loadItem<LANES>(photons, i & 1u).position.x, params.sums, i);
+}
+
+#line 165 "pipeline.cpp"
 void run_raygen_store(OxrtThread* thread, const OxrtTile* tile) {
     oxrt::runBlocks<LANES>(*thread, *tile, [](Lanes& lanes, Mask mask) {
         raygen_store_lanes(lanes, mask);
     });
 }
 
+void run_raygen_items(OxrtThread* thread, const OxrtTile* tile) {
+    oxrt::runBlocks<LANES>(*thread, *tile, [](Lanes& lanes, Mask mask) {
+        raygen_items_lanes(lanes, mask);
+    });
+}
+
 const OxrtProgram programs[] = {
     {"__raygen__store", OXRT_KIND_RAYGEN, 0, run_raygen_store},
+    {"__raygen__items", OXRT_KIND_RAYGEN, 0, run_raygen_items},
 };
-const OxrtPipelineVariant variants[] = {{oxrt::BUILT_ISA, 16, programs, 1}};
+const OxrtPipelineVariant variants[] = {{oxrt::BUILT_ISA, 16, programs, 2}};
 static_assert(sizeof(Params) == 112);
 
 }  // namespace

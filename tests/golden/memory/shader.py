@@ -52,3 +52,16 @@ def __raygen__store():
     copied = ox.copy(photon)
     copied.power = float4(params.halves[0, 0]).xyz
     params.store.photons[0] = copied
+
+
+@ox.program
+def __raygen__items():
+    """Items that a helper changes, by indices that differ and that do not; parts of storage vectors; shifts of literals."""
+    i = ox.get_launch_index().x
+    photons = ox.FixedArray[Photon, 2]()
+    grid = ox.FixedArray[ox.FixedArray[uint32, 2], 4]()
+    grid[i & 3][i >> 2 & 1] = 1 << (i & 31)
+    x = next_float(photons[i & 1]) + next_float(photons[0])
+    photons[1].flags = grid[2][i & 1] & ~4
+    params.halves[0, i].y = x
+    params.sums[i] = photons[i & 1].position.x
