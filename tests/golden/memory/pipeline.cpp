@@ -87,24 +87,22 @@ void raygen_items(OxrtThread& thread) {
     uint32_t i = oxrt::getLaunchIndex(thread).x;
     oxrt::FixedArray<Photon, 2> photons = oxrt::FixedArray<Photon, 2>{};
     oxrt::FixedArray<oxrt::FixedArray<uint32_t, 2>, 4> grid = oxrt::FixedArray<oxrt::FixedArray<uint32_t, 2>, 4>{};
-    if (grid.contains(i & 3u) && grid[i & 3u].contains((i >> 2u) & 1u))
-#line 63 "shader.py"
-        grid[i & 3u][(i >> 2u) & 1u] = oxrt::shiftLeft(1u, i & 31u);
+    grid[i & 3u][(i >> 2u) & 1u] = oxrt::shiftLeft(1u, i & 31u);
     float result = next_float(photons[i & 1u]);
 #line 64 "shader.py"
     float result_2 = next_float(photons[0]);
 #line 64 "shader.py"
     float x = result + result_2;
-    photons[1].flags = grid[2].load(i & 1u) & 4294967291u;
+    photons[1].flags = grid[2][i & 1u] & 4294967291u;
     if (oxrt::checked(thread).contains(params.halves, 0, i))
 #line 66 "shader.py"
         params.halves.at(0, i).y = x;
     if (oxrt::checked(thread).contains(params.sums, i))
 #line 67 "shader.py"
-        params.sums.at(i) = photons.load(i & 1u).position.x;
+        params.sums.at(i) = photons[i & 1u].position.x;
 }
 
-#line 108 "pipeline.cpp"
+#line 106 "pipeline.cpp"
 void run_raygen_store(OxrtThread* thread, const OxrtTile* tile) {
     oxrt::forEachIndex(*thread, *tile, [thread] {
         raygen_store(*thread);
