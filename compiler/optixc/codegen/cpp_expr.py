@@ -171,10 +171,8 @@ class Expressions:
     def place(self, place: Expr) -> str:
         """An expression that is assigned to: wrapped payload fields are not unwrapped."""
         match place:
-            case FieldRef(base=base, name=name):
-                return f"{self.place(base)}.{field_name(_struct(base.type), name)}"
-            case ComponentRef(base=base, components=(component,)):
-                return f"{self.place(base)}.{'xyzw'[component]}"
+            case FieldRef(base=base) | ComponentRef(base=base, components=(_,)):
+                return part_of(place, self.place(base))
             case IndexRef(base=base, index=index):
                 return f"{self.place(base)}[{self.text(index)}]"
             case ElementRef(array=array, indices=indices):
@@ -295,6 +293,13 @@ class Expressions:
         if isinstance(target, Vector) and isinstance(value.type, Vector) and target != value.type:
             return f"oxrt::convert<{self._dialect_scalar(target.element)}>({text})"
         return text
+
+
+def part_of(place: FieldRef | ComponentRef, base: str) -> str:
+    """A field of a struct or a component of a vector, as a place; `base` is the text of what it is a part of."""
+    if isinstance(place, FieldRef):
+        return f"{base}.{field_name(_struct(place.base.type), place.name)}"
+    return f"{base}.{'xyzw'[place.components[0]]}"
 
 
 def within(code: Code, precedence: int) -> str:

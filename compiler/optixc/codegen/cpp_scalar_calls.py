@@ -3,12 +3,9 @@
 from __future__ import annotations
 
 from optixc.codegen.cpp_coop_vec import checked_spans, memory_call, values_of
-from optixc.codegen.cpp_expr import Expressions
+from optixc.codegen.cpp_expr import Expressions, part_of
 from optixc.codegen.cpp_signatures import FunctionNames, Signatures
-from optixc.codegen.cpp_types import (
-    TypeNames,
-    field_name,
-)
+from optixc.codegen.cpp_types import TypeNames
 from optixc.codegen.names import Scope, string_literal
 from optixc.codegen.needs import REPORT, THROW, Options
 from optixc.codegen.program_classes import known_flags
@@ -184,9 +181,8 @@ class ScalarCalls:
     def _reference(self, place: Expr) -> str:
         """A place that is passed by reference; in checked builds one that exists in any case."""
         match place:
-            case FieldRef(base=base, name=name):
-                assert isinstance(base.type, Struct)
-                return f"{self._reference(base)}.{field_name(base.type, name)}"
+            case FieldRef(base=base):
+                return part_of(place, self._reference(base))
             case IndexRef(base=base, index=index) if self._options.is_checked and not isinstance(index, Literal):
                 return f"oxrt::checked({self._names.thread}).itemPlace({self._reference(base)}, {self._expressions.text(index)})"
             case _:

@@ -28,14 +28,10 @@ from optixc.ir.nodes import (
     CallCallable,
     CallHelper,
     CallIntrinsic,
-    ComponentRef,
     Continue,
     ElementRef,
-    Expr,
-    FieldRef,
     ForRange,
     If,
-    IndexRef,
     Literal,
     Local,
     LocalRef,
@@ -47,7 +43,7 @@ from optixc.ir.nodes import (
     While,
 )
 from optixc.ir.types import Void
-from optixc.ir.walk import Body, expressions, place_root, statements
+from optixc.ir.walk import Body, expressions, place_origin, place_root, statements
 from optixc.passes.uniformity import Clone
 
 
@@ -188,8 +184,8 @@ class LaneFunction:
         if isinstance(target, LocalRef):
             self._set(statement, target.local, self._expressions.code(statement.value).text, self._dialect.varies(statement.value))
             return
-        element = _element_of(target)
-        if element is not None:
+        element = place_origin(target)
+        if isinstance(element, ElementRef):
             self._writer.line(self._calls.store(target, element, statement.value), statement.span)
             return
         root = place_root(target)
@@ -441,10 +437,3 @@ class LaneFunction:
             values = [self._expressions.text(value) for value in statement.values]
             condition = self._expressions.wide(statement.condition)
             self._writer.line(assertion_call(statement, [self._names.thread, self._mask], condition, values), statement.span)
-
-
-def _element_of(place: Expr) -> ElementRef | None:
-    """The array element that a place is, or is a part of."""
-    while isinstance(place, FieldRef | ComponentRef | IndexRef):
-        place = place.base
-    return place if isinstance(place, ElementRef) else None

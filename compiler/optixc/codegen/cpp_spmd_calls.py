@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from optixc.codegen.cpp_coop_vec import checked_spans, memory_call, values_of
+from optixc.codegen.cpp_expr import part_of
 from optixc.codegen.cpp_scalar_calls import timed
 from optixc.codegen.cpp_signatures import FunctionNames, Signatures
 from optixc.codegen.cpp_spmd_expr import PAYLOAD_SETTER, LaneExpressions
 from optixc.codegen.cpp_spmd_items import ItemLoops, has_varying_index
 from optixc.codegen.cpp_spmd_types import WideTypes
-from optixc.codegen.cpp_types import field_name
 from optixc.codegen.names import string_literal
 from optixc.codegen.needs import REPORT, THROW, Options
 from optixc.codegen.program_classes import known_flags
@@ -30,10 +30,7 @@ from optixc.ir.nodes import (
     Trace,
     is_reference_type,
 )
-from optixc.ir.types import (
-    FixedArray,
-    Struct,
-)
+from optixc.ir.types import FixedArray, Struct
 from optixc.passes.uniformity import Clone
 
 HIT_OBJECT_SETTERS = frozenset({"make_nop_hit_object", "hit_object_set_sbt_record_index", "reorder"})
@@ -78,11 +75,8 @@ class LaneCalls:
     def _part(self, place: Expr, element: ElementRef) -> str:
         """A part of the scalar `element` of one lane."""
         match place:
-            case FieldRef(base=base, name=name):
-                assert isinstance(base.type, Struct)
-                return f"{self._part(base, element)}.{field_name(base.type, name)}"
-            case ComponentRef(base=base, components=(component,)):
-                return f"{self._part(base, element)}.{'xyzw'[component]}"
+            case FieldRef(base=base) | ComponentRef(base=base, components=(_,)):
+                return part_of(place, self._part(base, element))
             case IndexRef(base=base, index=index):
                 inner, position = self._part(base, element), f"oxrt::inLane({self._expressions.text(index)}, lane)"
                 if self._options.is_checked and isinstance(base.type, FixedArray) and not isinstance(index, Literal):

@@ -31,14 +31,7 @@ from optixc.ir.nodes import (
     Logical,
     Select,
 )
-from optixc.ir.types import (
-    Scalar,
-    ScalarKind,
-    Tuple,
-    Type,
-    Vector,
-    scalar_of,
-)
+from optixc.ir.types import Scalar, ScalarKind, Tuple, Type, Vector, scalar_of
 from optixc.ir.walk import subexpressions
 from optixc.passes.uniformity import COMMON_IN_INTERSECTION, Clone, varies
 

@@ -5,10 +5,11 @@ from __future__ import annotations
 
 from collections.abc import Collection
 
+from optixc.codegen.cpp_expr import part_of
 from optixc.codegen.cpp_spmd_expr import LaneExpressions
-from optixc.codegen.cpp_types import field_name
 from optixc.ir.nodes import ComponentRef, ElementRef, Expr, FieldRef, IndexRef, Literal
-from optixc.ir.types import FixedArray, Struct
+from optixc.ir.types import FixedArray
+from optixc.ir.walk import place_origin
 
 
 class ItemLoops:
@@ -26,11 +27,8 @@ class ItemLoops:
     def place(self, place: Expr) -> str:
         """The text of a place; each index that varies opens one more loop."""
         match place:
-            case FieldRef(base=base, name=name):
-                assert isinstance(base.type, Struct)
-                return f"{self.place(base)}.{field_name(base.type, name)}"
-            case ComponentRef(base=base, components=(component,)):
-                return f"{self.place(base)}.{'xyzw'[component]}"
+            case FieldRef(base=base) | ComponentRef(base=base, components=(_,)):
+                return part_of(place, self.place(base))
             case IndexRef(base=base, index=index):
                 inner, position = self.place(base), self._expressions.text(index)
                 if self._expressions.lanes.varies(index):
@@ -65,12 +63,6 @@ def has_varying_index(expressions: LaneExpressions, place: Expr) -> bool:
     node = place
     while isinstance(node, FieldRef | ComponentRef | IndexRef):
         if isinstance(node, IndexRef) and expressions.lanes.varies(node.index):
-            return not isinstance(_root(node), ElementRef)
+            return not isinstance(place_origin(node), ElementRef)
         node = node.base
     return False
-
-
-def _root(place: Expr) -> Expr:
-    while isinstance(place, FieldRef | ComponentRef | IndexRef):
-        place = place.base
-    return place

@@ -183,8 +183,14 @@ def called_helpers(body: Body) -> Iterator[str]:
                     yield part.function
 
 
-def place_root(place: Expr) -> Local | None:
-    """The local that a chain of fields, components and indices starts from; None if it is memory, parameters or a value."""
+def place_origin(place: Expr) -> Expr:
+    """What a chain of fields, components and indices starts from."""
     while isinstance(place, FieldRef | ComponentRef | IndexRef | TupleItem):
         place = place.base
-    return place.local if isinstance(place, LocalRef) else None
+    return place
+
+
+def place_root(place: Expr) -> Local | None:
+    """The local that a chain of fields, components and indices starts from; None if it is memory, parameters or a value."""
+    origin = place_origin(place)
+    return origin.local if isinstance(origin, LocalRef) else None
