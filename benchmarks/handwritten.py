@@ -18,13 +18,13 @@ from numpy.typing import NDArray
 
 from benchmarks.scenes import MATERIALS, QUAD_TRIANGLES, SUN, Floats, Scene
 from benchmarks.workloads import Workload
-from optixc.toolchain import WHOLE_VECTORS, processor_lanes
+from optixc.toolchain import whole_vectors
 
 ROOT = Path(__file__).resolve().parents[1]
 KERNELS = Path(__file__).resolve().parent / "kernels"
 BUILD = ROOT / "build" / "benchmarks"
 INCLUDE = ROOT / "runtime_cpp" / "include"
-# those of compiled pipelines, exceptions aside: the kernels start threads through the C++ library
+# those of compiled pipelines (and their `whole_vectors`), exceptions aside: the kernels start threads through the C++ library
 FLAGS = [
     *("-std=c++20", "-O3", "-march=native", "-ffp-contract=off", "-fwrapv", "-fno-math-errno", "-fno-trapping-math"),
     *("-fPIC", "-shared", "-fno-rtti", "-fvisibility=hidden", "-w"),
@@ -63,19 +63,12 @@ def embree_library() -> Path:
     return found[0]
 
 
-def _whole_vectors(compiler: str) -> tuple[str, ...]:
-    """The flags by which compiled pipelines copy 16 lanes in whole registers."""
-    if processor_lanes() < 16:
-        return ()
-    return WHOLE_VECTORS["clang" if "clang" in compiler else "gcc"]
-
-
 def build(source: str, compiler: str, extra_flags: tuple[str, ...] = ()) -> Path:
     """Compiles kernels/`source`.cpp unless a build of the same text, flags and compiler is there."""
     embree = embree_library()
     texts = [path.read_bytes() for path in sorted(KERNELS.glob("*.h"))] + [(KERNELS / f"{source}.cpp").read_bytes()]
     texts += [(INCLUDE / "oxrt" / "embree.h").read_bytes(), compiler_version(compiler).encode(), str(embree).encode()]
-    extra_flags = (*extra_flags, *_whole_vectors(compiler))
+    extra_flags = (*extra_flags, *whole_vectors("clang" if "clang" in compiler else "gcc"))
     key = hashlib.sha256(b"\0".join([*texts, " ".join([*FLAGS, *extra_flags]).encode()])).hexdigest()[:16]
     output = BUILD / f"{source}-{compiler}-{key}.so"
     if not output.exists():

@@ -250,7 +250,6 @@ class DeviceContext(Context):
         _ = self.handle
         return build_array(self, data, descs, histogram, flags)
 
-
     def coop_vec_matrix_compute_size(
         self, n: int, k: int, element_type: CoopVecElemType, layout: CoopVecMatrixLayout, row_column_stride_in_bytes: int = 0
     ) -> int:

@@ -96,6 +96,18 @@ def element_offsets(n: int, k: int, element: Element, layout: Layout, stride: in
     return ((tile * k + columns) * TILE_ROWS + row) * stored_dtype(element, layout).itemsize
 
 
+def element_places(n: int, k: int, element: Element, layout: Layout, stride: int = 0) -> NDArray[np.int64]:
+    """The offsets of every byte of every element, as an array of shape (n, k, bytes of an element)."""
+    width = stored_dtype(element, layout).itemsize
+    return element_offsets(n, k, element, layout, stride)[..., None] + np.arange(width)
+
+
+def read_elements(memory: NDArray[np.uint8], n: int, k: int, element: Element, layout: Layout, stride: int = 0) -> NDArray[Any]:
+    """The elements of a matrix that begins at the first byte of `memory`, of shape (n, k), as the layout keeps them."""
+    picked = np.ascontiguousarray(memory[element_places(n, k, element, layout, stride)])
+    return picked.view(stored_dtype(element, layout))[..., 0]
+
+
 def stride_problem(n: int, k: int, element: Element, layout: Layout, stride: int) -> str | None:
     """What is wrong with a stride, None if nothing is; optimal layouts have none."""
     if layout in OPTIMAL or stride == 0:

@@ -105,15 +105,19 @@ class Build:
         )
 
 
-WHOLE_VECTORS = {"clang": ("-mprefer-vector-width=512",), "gcc": ("-mmove-max=512", "-mstore-max=512")}
+_WHOLE_VECTORS = {"clang": ("-mprefer-vector-width=512",), "gcc": ("-mmove-max=512", "-mstore-max=512")}
 """Lets structs of 16 lanes be copied in whole registers. Compilers copy them in halves, which the processor cannot forward to the load of
 the whole that follows: Whitted's spheres gain 2.7 % (clang) and 14 % (g++), scalar code and other workloads are the same."""
 
 
+def whole_vectors(kind: str, target: str = "native") -> tuple[str, ...]:
+    """The flags for it of a kind of compiler, where the target has such registers."""
+    return _WHOLE_VECTORS[kind] if processor_lanes(target) == 16 else ()
+
+
 def _arguments(compiler: Compiler, build: Build) -> tuple[str, ...]:
     """What every run of this compiler for the build begins with."""
-    whole = WHOLE_VECTORS[compiler.kind] if processor_lanes(build.target) == 16 else ()
-    return (*build.flags(), *whole, *_QUIET)
+    return (*build.flags(), *whole_vectors(compiler.kind, build.target), *_QUIET)
 
 
 def find_compiler(memory: Path | None = None) -> Compiler:

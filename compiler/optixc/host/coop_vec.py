@@ -85,8 +85,8 @@ def convert(
         raise InvalidValueError("the output array is read-only; give one that can be written")
     for network in range(num_networks):
         for one, other in zip(before, after, strict=True):
-            elements = _read(old, one, network * strides[0])
-            _write(new, other, network * strides[1], elements)
+            elements = layouts.read_elements(old[one.offset_in_bytes + network * strides[0] :], *_told(one))
+            _write(new[other.offset_in_bytes + network * strides[1] :], other, elements)
     return output
 
 
@@ -115,7 +115,7 @@ def _size(one: CoopVecMatrixDescription) -> int:
 
 
 def _extent(one: CoopVecMatrixDescription) -> int:
-    return layouts.matrix_extent(one.n, one.k, Element(one.element_type), Layout(one.layout), one.row_column_stride_in_bytes)
+    return layouts.matrix_extent(*_told(one))
 
 
 def _check_types(old: Element, new: Element) -> None:
@@ -139,29 +139,21 @@ def _memory(array: NDArray[Any], layers: list[CoopVecMatrixDescription], stride:
     return memory
 
 
-def _read(memory: NDArray[np.uint8], one: CoopVecMatrixDescription, start: int) -> NDArray[Any]:
-    places, dtype = _places(one, start)
-    return np.ascontiguousarray(memory[places]).view(dtype)[..., 0]
-
-
-def _write(memory: NDArray[np.uint8], one: CoopVecMatrixDescription, start: int, elements: NDArray[Any]) -> None:
-    places, dtype = _places(one, start)
-    element = Element(one.element_type)
+def _write(matrix: NDArray[np.uint8], one: CoopVecMatrixDescription, elements: NDArray[Any]) -> None:
+    """Keeps elements as the description says; the matrix begins at the first byte."""
+    n, k, element, kind, stride = _told(one)
+    dtype = layouts.stored_dtype(element, kind)
     with np.errstate(over="ignore"):
         if element in layouts.FLOAT8:
             elements = float8.rounded(elements.astype(np.float32), element)
         elif element is Element.FLOAT16:
             elements = elements.astype(np.float16)
         stored = np.ascontiguousarray(elements.astype(dtype))
-    if one.layout in layouts.OPTIMAL:
+    if kind in layouts.OPTIMAL:
         # Rows that fill a tile are multiplied too.
-        first = one.offset_in_bytes + start
-        memory[first : first + _extent(one)] = 0
-    memory[places] = stored[..., None].view(np.uint8)
+        matrix[: _extent(one)] = 0
+    matrix[layouts.element_places(n, k, element, kind, stride)] = stored[..., None].view(np.uint8)
 
 
-def _places(one: CoopVecMatrixDescription, start: int) -> tuple[NDArray[np.int64], np.dtype[Any]]:
-    element, kind = Element(one.element_type), Layout(one.layout)
-    dtype = layouts.stored_dtype(element, kind)
-    offsets = layouts.element_offsets(one.n, one.k, element, kind, one.row_column_stride_in_bytes) + one.offset_in_bytes + start
-    return offsets[..., None] + np.arange(dtype.itemsize), dtype
+def _told(one: CoopVecMatrixDescription) -> tuple[int, int, Element, Layout, int]:
+    return one.n, one.k, Element(one.element_type), Layout(one.layout), one.row_column_stride_in_bytes

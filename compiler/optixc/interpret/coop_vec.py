@@ -107,12 +107,8 @@ def _bytes_at(address: int, size: int) -> NDArray[np.uint8]:
 
 def _matrix(array: ArrayValue, offset: int, shape: tuple[int, int], element: Element, kind: Layout, stride: int) -> NDArray[Any]:
     """The elements of a matrix in memory, as its layout keeps them."""
-    offsets = layouts.element_offsets(*shape, element, kind, stride)
-    dtype = layouts.stored_dtype(element, kind)
     size = layouts.matrix_extent(*shape, element, kind, stride)
-    memory = _bytes_at(_place(array, offset, size), size)
-    picked = memory[offsets[..., None] + np.arange(dtype.itemsize)]
-    return np.ascontiguousarray(picked).view(dtype)[..., 0]
+    return layouts.read_elements(_bytes_at(_place(array, offset, size), size), *shape, element, kind, stride)
 
 
 # ---- products -----------------------------------------------------------------------------------------------------------------
