@@ -10,6 +10,15 @@
 
 namespace oxrt {
 
+enum RayField { ORIGIN = 0, TNEAR = 3, DIRECTION = 4, TIME = 7, TFAR = 8 };
+enum HitField { NORMAL = 0, PRIMITIVE = 5 };
+
+// Where field `field` of lane `lane` stands in a packet of `width`; the fields follow each other as in RTCRay and RTCHit.
+inline float& fieldOf(void* packet, unsigned field, unsigned width, unsigned lane)
+{
+    return static_cast<float*>(packet)[field * width + lane];
+}
+
 // One bit for each lane that is valid.
 inline unsigned validLanes(const RTCFilterFunctionNArguments& arguments)
 {
@@ -35,10 +44,9 @@ template <class F> void eachValidLane(const RTCFilterFunctionNArguments& argumen
 // Whether the ray enters the surface in this lane; else it leaves it.
 inline bool isEntered(const RTCFilterFunctionNArguments& arguments, unsigned lane)
 {
-    enum { DIRECTION = 4, NORMAL = 0 };
     const unsigned width = arguments.N;
-    const float* const direction = reinterpret_cast<const float*>(arguments.ray) + DIRECTION * width + lane;
-    const float* const normal = reinterpret_cast<const float*>(arguments.hit) + NORMAL * width + lane;
+    const float* const direction = &fieldOf(arguments.ray, DIRECTION, width, lane);
+    const float* const normal = &fieldOf(arguments.hit, NORMAL, width, lane);
     return direction[0] * normal[0] + direction[width] * normal[width] + direction[2 * width] * normal[2 * width] < 0;
 }
 

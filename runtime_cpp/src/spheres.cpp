@@ -16,15 +16,6 @@ namespace {
 
 constexpr std::size_t floatsPerSphere = 4;
 
-// Where field `field` of lane `lane` stands in a packet of `width`; the fields follow each other as in RTCRay and RTCHit.
-float& fieldOf(void* packet, unsigned field, unsigned width, unsigned lane)
-{
-    return static_cast<float*>(packet)[field * width + lane];
-}
-
-enum RayField { ORIGIN = 0, TNEAR = 3, DIRECTION = 4, TIME = 7, TFAR = 8 };
-enum HitField { NORMAL = 0, PRIMITIVE = 5 };
-
 // Embree computes a distance with an error relative to the radius. Where the ray begins nearer to the sphere than that, the distance is
 // computed again: in double precision, and without the difference of two large numbers.
 double entryDistance(const Point4& sphere, const RTCFilterFunctionNArguments& arguments, unsigned lane)
