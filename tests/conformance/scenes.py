@@ -6,11 +6,9 @@ from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
-import pytest
 from harness import Harness
 from oracle_compare import unlawful
 from oracle_events import RayResult, record
-from oracle_features import FEATURES
 from oracle_files import Probe
 from oracle_scene import build
 
@@ -112,10 +110,3 @@ def closest(result: RayResult) -> dict[str, Any]:
 def missed(result: RayResult) -> bool:
     """Whether the miss program ran and nothing else did at the end."""
     return bool(calls(result, "MS")) and not calls(result, "CH")
-
-
-def require(*names: str) -> None:
-    """Skip the test where a feature is not there yet, by the one table of features."""
-    absent = [name for name in names if not FEATURES[name].supported]
-    if absent:
-        pytest.skip(f"needs {', '.join(absent)}")

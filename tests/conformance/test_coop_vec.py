@@ -9,27 +9,18 @@ from typing import Any
 import numpy as np
 import pytest
 from harness import Harness
+from shaders import coop_vec as shader
 
 import optixc as ox
 from optixc import CoopVecElemType as Element
 from optixc import CoopVecMatrixLayout as Layout
 
 SHADER = "coop_vec.py"
-N, ROWS, LINES = 24, 21, 60
+ROWS, LINES = 21, 60
+N = shader.N
 STORED = {"float32": np.float32, "float16": np.float16, "int8": np.int8, "uint8": np.uint8, "int32": np.int32}
 Table = np.ndarray[Any, Any]
-
-
-@ox.struct
-class Params:
-    a: ox.Array2[ox.float32]
-    b: ox.Array2[ox.float32]
-    c: ox.Array2[ox.float32]
-    out: ox.Array3[ox.float64]
-    memory: ox.Array[ox.uint8]
-    halves: ox.Array[ox.float16]
-    floats: ox.Array[ox.float32]
-    offset: ox.uint32
+Params = shader.Params
 
 
 def params(**changed: Any) -> Params:

@@ -9,7 +9,7 @@ import brute_force
 import numpy as np
 import pytest
 from harness import Harness
-from scenes import CORNER, IDENTITY, boxes, calls, closest, gas, hitgroup, ias, instance, missed, ray, reported, require, trace, triangles
+from scenes import CORNER, IDENTITY, boxes, calls, closest, gas, hitgroup, ias, instance, missed, ray, reported, trace, triangles
 
 import optixc as ox
 
@@ -62,31 +62,26 @@ def test_T166_without_motion_the_time_is_zero(harness: Harness) -> None:
 
 
 def test_T167_T168_vertices_move_and_clamp(harness: Harness) -> None:
-    require("vertex motion")
     assert heights(harness, [moving_triangle(0.0, 1.0)], [0.25, -5.0, 7.0, 0.0, 1.0]) == [0.25, 0.0, 1.0, 0.0, 1.0]
 
 
 def test_T169_vanishing_outside_the_range(harness: Harness) -> None:
-    require("vertex motion")
     scene = [moving_triangle(0.0, 1.0, flags=START_VANISH | END_VANISH)]
     assert heights(harness, scene, [-0.01, 0.0, 1.0, 1.01]) == [None, 0.0, 1.0, None]
 
 
 def test_T170_keys_and_fractions(harness: Harness) -> None:
-    require("vertex motion")
     found = heights(harness, [moving_triangle(0.0, 1.0, 3.0, begin=-1.0, end=1.5)], [-2, -1, -0.5, 0.25, 1, 1.5, 3])
     assert found == pytest.approx([0.0, 0.0, 0.4, 1.0, 2.2, 3.0, 3.0], abs=1e-5)
 
 
 def test_T171_every_traversable_has_its_own_range(harness: Harness) -> None:
-    require("vertex motion", "matrix motion")
     lift = [IDENTITY, [*IDENTITY[:11], 4.0]]
     scene = [moving_triangle(0.0, 1.0), transform("matrixMotion", lift, begin=10.0, end=20.0), ias(instance("moving"))]
     assert heights(harness, scene, [15.0, 0.5], "ias") == [3.0, 0.5]
 
 
 def test_T172_matrices_are_blended_by_element(harness: Harness) -> None:
-    require("matrix motion")
     turned = [0, -1, 0, 0, 1, 0, 0, 0, 0, 0, 1, 0]
     matrix = to_world(harness, transform("matrixMotion", [IDENTITY, turned]), 0.5)
     assert np.linalg.norm(matrix[:2, 0]) == pytest.approx(math.sqrt(0.5), rel=1e-5)
@@ -95,13 +90,11 @@ def test_T172_matrices_are_blended_by_element(harness: Harness) -> None:
 @pytest.mark.parametrize(("angle", "time", "expected"), [
     (60.0, 1.0, 60.0), (60.0, 0.25, 14.738520), (60.0, 0.5, 30.0), (90.0, 0.25, 21.598161), (90.0, 0.5, 45.0)])
 def test_T173_rotations_are_nlerped(harness: Harness, angle: float, time: float, expected: float) -> None:
-    require("SRT motion")
     matrix = to_world(harness, transform("srtMotion", [srt(), srt(angle)]), time)
     assert math.degrees(math.atan2(matrix[1, 0], matrix[0, 0])) == pytest.approx(expected, abs=1e-4)
 
 
 def test_T174_T175_scale_shear_pivot_rotation_translation(harness: Harness) -> None:
-    require("SRT motion")
     key = srt(90.0, sx=2, a=0.5, b=0.25, pvx=1, sy=3, c=0.75, pvy=2, sz=4, pvz=3, tx=10, ty=20, tz=30)
     matrix = to_world(harness, transform("srtMotion", [key, key]), 0.5)
     assert np.allclose(matrix, [[0, -3, -0.75, 8], [2, 0.5, 0.25, 21], [0, 0, 4, 33]], atol=1e-5)
@@ -111,7 +104,6 @@ def test_T174_T175_scale_shear_pivot_rotation_translation(harness: Harness) -> N
 
 
 def test_T176_quaternions_need_not_be_unit(harness: Harness) -> None:
-    require("SRT motion")
     key = srt(60.0)
     longer = [*key[:9], *(3 * value for value in key[9:13]), *key[13:]]
     assert np.allclose(to_world(harness, transform("srtMotion", [longer, longer]), 0.5),
@@ -119,7 +111,6 @@ def test_T176_quaternions_need_not_be_unit(harness: Harness) -> None:
 
 
 def test_T177_hits_and_matrices_agree(harness: Harness) -> None:
-    require("SRT motion")
     random = np.random.default_rng(177)
     for _ in range(20):
         keys = [srt(sx=random.uniform(0.5, 2), a=random.normal(0, 0.2), sy=random.uniform(0.5, 2), sz=random.uniform(0.5, 2),
@@ -137,14 +128,12 @@ def test_T177_hits_and_matrices_agree(harness: Harness) -> None:
 
 
 def test_T178_moving_boxes_lose_no_hit(harness: Harness) -> None:
-    require("vertex motion")
     scene = [{**gas({**boxes([[0, 0, 0, 1, 1, 1]]), "aabbs": [[0, 0, 0, 1, 1, 1], [0, 0, 10, 1, 1, 11]]}), "motion": motion()}]
     rays = [ray((0.5, -5.0, 10.0 * time + 0.5), (0, 1, 0), time=time) for time in np.linspace(0, 1, 21)]
     assert all(calls(result, "IS") for result in trace(harness, scene, rays, [hitgroup(kind="custom")], motion=True))
 
 
 def test_T180_instance_bounds_cover_the_motion(harness: Harness) -> None:
-    require("matrix motion")
     far = [IDENTITY, [*IDENTITY[:3], 100.0, *IDENTITY[4:]]]
     scene = [gas(triangles(CORNER)), transform("matrixMotion", far), ias(instance("moving"))]
     rays = [ray((100.0 * time + 0.25, 0.25, 1.0), root="ias", time=time) for time in np.linspace(0, 1, 21)]
@@ -153,7 +142,6 @@ def test_T180_instance_bounds_cover_the_motion(harness: Harness) -> None:
 
 @pytest.mark.parametrize(("keys", "begin", "end"), [(1, 0.0, 1.0), (2, 1.0, 0.0), (2, 0.5, 0.5)])
 def test_T182_transforms_need_two_keys_in_order(harness: Harness, keys: int, begin: float, end: float) -> None:
-    require("matrix motion")
     child = harness.context.accel_build([ox.BuildInputTriangles(np.array(CORNER, np.float32))])
     matrices = np.array([IDENTITY] * keys, np.float32).reshape(-1, 3, 4)
     with pytest.raises(ox.InvalidValueError):
@@ -161,7 +149,6 @@ def test_T182_transforms_need_two_keys_in_order(harness: Harness, keys: int, beg
 
 
 def test_T186_static_below_motion(harness: Harness) -> None:
-    require("matrix motion", "static transforms")
     lift = [IDENTITY, [*IDENTITY[:11], 4.0]]
     double = [2.0, 0, 0, 0, 0, 2.0, 0, 0, 0, 0, 2.0, 1.0]
     scene = [gas(triangles(CORNER)), {"name": "static", "kind": "static", "child": "gas", "data": double},
@@ -171,7 +158,6 @@ def test_T186_static_below_motion(harness: Harness) -> None:
 
 def test_motion_transforms_are_missed_without_motion_in_the_pipeline(harness: Harness) -> None:
     # Recorded: 06_motion-matrix_motion_in_pipeline_without_motion.
-    require("matrix motion")
     scene = [gas(triangles(CORNER)), transform("matrixMotion", [IDENTITY, IDENTITY]), ias(instance("moving"))]
     (result,) = trace(harness, scene, [ray((0.25, 0.25, 1.0), root="ias")])
     assert missed(result)

@@ -8,7 +8,7 @@ import pytest
 from harness import Harness
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
-from scenes import calls, closest, gas, hitgroup, missed, offsets, ray, require, trace
+from scenes import calls, closest, gas, hitgroup, missed, offsets, ray, trace
 
 IGNORE = 1
 SPHERE_KIND = 138
@@ -18,11 +18,6 @@ def spheres(centers: object, radii: object, flags: tuple[int, ...] = (0,), **mor
     """A sphere input."""
     return {"type": "spheres", "vertices": [np.asarray(centers, np.float32).ravel().tolist()],
             "radii": [np.asarray(radii, np.float32).ravel().tolist()], "flags": list(flags), "numSbtRecords": len(flags), **more}
-
-
-@pytest.fixture(autouse=True)
-def _spheres() -> None:
-    require("spheres")
 
 
 def shoot(harness: Harness, scene: list[dict[str, object]], *rays: dict[str, object], mode: int = 0, records: int = 1) -> list[object]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from harness import Harness
-from scenes import CORNER, FAR, closest, missed, ray, require, trace
+from scenes import CORNER, FAR, closest, missed, ray, trace
 
 import optixc as ox
 
@@ -79,7 +79,6 @@ def test_T239_refits_hit_what_a_rebuild_hits(harness: Harness) -> None:
 
 
 def test_T240_a_compacted_structure_traces_alike(harness: Harness) -> None:
-    require("compaction")
     accel = harness.context.accel_build(at_z(0.0), build_flags=ox.BuildFlags.ALLOW_COMPACTION)
     handle, size = accel.handle, accel.memory_usage
     compacted = accel.compact()
