@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import functools
 from collections.abc import Callable
+from inspect import Parameter, Signature
 from typing import Any, Generic, ParamSpec, TypeVar, cast
 
 from optixc.errors import InvalidOperationError
@@ -38,6 +39,9 @@ class ProgramFunction(Generic[P, R]):
     def __repr__(self) -> str:
         return f"<program {self.__wrapped__.__name__}>"
 
+    def __reduce__(self) -> str:
+        return self.__wrapped__.__qualname__
+
 
 class HelperFunction(Generic[P, R]):
     """A helper of a shader file; called from Python it runs with the arithmetic of shaders, float32 and wrapping integers."""
@@ -51,6 +55,9 @@ class HelperFunction(Generic[P, R]):
 
     def __repr__(self) -> str:
         return f"<device function {self.__wrapped__.__name__}>"
+
+    def __reduce__(self) -> str:
+        return self.__wrapped__.__qualname__
 
 
 def program(function: Callable[P, R]) -> ProgramFunction[P, R]:
@@ -78,9 +85,9 @@ class LaunchParameters:
         self.__dict__["__optixc_params__"] = kind
 
     def __getattr__(self, name: str) -> Any:
-        kind = self.__dict__["__optixc_params__"]
         if name.startswith("__"):
             raise AttributeError(name)
+        kind = self.__dict__["__optixc_params__"]
         raise InvalidOperationError(f"launch parameters have values only inside a launch; {kind.__name__}.{name} cannot be read here")
 
     def __setattr__(self, name: str, value: object) -> None:
@@ -102,10 +109,21 @@ def device_function(name: str) -> Callable[..., Any] | None:
 
     def call(*args: Any, **kwargs: Any) -> Any:
         try:
-            return mathematics.evaluate(name, (*args, *kwargs.values()))
+            return mathematics.evaluate(name, _in_order(name, args, kwargs))
         except KeyError:
             raise InvalidOperationError(f"{name}() works inside a program only; optixc.interpret runs a program in Python") from None
 
     call.__name__ = call.__qualname__ = name
     call.__doc__ = row.doc if row is not None else None
     return call
+
+
+def _in_order(name: str, args: tuple[Any, ...], kwargs: dict[str, Any]) -> tuple[Any, ...]:
+    """All arguments in the order of the function's parameters."""
+    if not kwargs or name not in INTRINSICS:
+        return args
+    parameters = [Parameter(one.name, Parameter.POSITIONAL_OR_KEYWORD) for one in INTRINSICS[name].parameters]
+    try:
+        return Signature(parameters).bind(*args, **kwargs).args
+    except TypeError as error:
+        raise TypeError(f"{name}(): {error}") from None

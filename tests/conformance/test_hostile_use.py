@@ -19,6 +19,7 @@ from harness import SHADERS
 from shaders import missing_arrays, read_only
 
 import optixc as ox
+from optixc.stdlib import random
 
 COUNT = 1 << 14
 MODES = [1, 8, 16]
@@ -108,6 +109,15 @@ def test_objects_of_this_process_are_not_copied() -> None:
     gc.collect()
     scene.launch()
     assert accel.aabb.shape == (2, 3)
+
+
+def test_what_a_shader_file_defines_is_copied_and_pickled() -> None:
+    """Functions by their names, as Python's own; a process pool can so call a helper."""
+    for one in (random.pcg32_float, missing_arrays.__raygen__read):
+        assert copy.deepcopy(one) is one and pickle.loads(pickle.dumps(one)) is one
+    for parameters in (copy.deepcopy(missing_arrays.params), pickle.loads(pickle.dumps(missing_arrays.params))):
+        with pytest.raises(ox.InvalidOperationError, match="Params.scene cannot be read here"):
+            _ = parameters.scene
 
 
 def test_parameters_are_copied_and_pickled() -> None:

@@ -5,6 +5,7 @@ Sums, products, quotients and square roots are those of compiled code bit for bi
 
 from __future__ import annotations
 
+import functools
 from collections.abc import Callable
 from typing import Any
 
@@ -88,8 +89,8 @@ _FLOAT_FUNCTIONS: dict[str, Callable[..., Any]] = {
 _NUMBER_FUNCTIONS: dict[str, Callable[..., Any]] = {
     "abs": np.abs,
     "sign": np.sign,
-    "min": lambda a, b: np.where(a < b, a, b),
-    "max": lambda a, b: np.where(a > b, a, b),
+    "min": lambda *values: functools.reduce(lambda a, b: np.where(a < b, a, b), values),
+    "max": lambda *values: functools.reduce(lambda a, b: np.where(a > b, a, b), values),
     "clamp": lambda x, low, high: np.where(low > np.where(x < high, x, high), low, np.where(x < high, x, high)),
 }
 _BIT_FUNCTIONS: dict[str, Callable[..., Any]] = {
