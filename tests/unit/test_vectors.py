@@ -76,7 +76,7 @@ def test_mathematics_on_plain_values() -> None:
     assert ox.max(3, 1, 4) == 4 and ox.min(3.0, 1.0, 2.0) == 1.0
     assert ox.clamp(-5.0, high=1.0, low=0.0) == 0.0
     with pytest.raises(TypeError, match=r"clamp\(\): got an unexpected keyword argument 'top'"):
-        ox.clamp(-5.0, 0.0, top=1.0)
+        ox.clamp(-5.0, 0.0, 1.0, top=1.0)
     assert ox.sqrt(2.0) == float(np.sqrt(np.float32(2)))
     assert ox.uint_as_float(ox.float_as_uint(1.5)) == 1.5
     assert ox.popcount(0xFF) == 8
