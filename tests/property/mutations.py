@@ -24,7 +24,7 @@ def mutated(random: Random, text: str, times: int) -> str:
 def _tokens(text: str) -> list[tokenize.TokenInfo]:
     try:
         return [token for token in tokenize.generate_tokens(io.StringIO(text).readline) if token.string.strip()]
-    except (tokenize.TokenError, SyntaxError):
+    except (tokenize.TokenError, SyntaxError, SystemError):  # Python 3.12 has a SystemError for null characters
         return []
 
 
