@@ -53,6 +53,7 @@ class Declarations:
     def _find(self, name: str) -> Symbol | None:
         definitions = self.definitions.get(name)
         found: Symbol | None = None
+        unusable: SkippedName | None = None
         if definitions:
             if name in self._in_progress:
                 return SkippedName(name, "defined in terms of itself", self.span(definitions[-1].node))
@@ -65,15 +66,19 @@ class Declarations:
             # A live value is what Python would use, whatever the text of its definition; to explain one, this scope may be asked again.
             self._asked.add(name)
             try:
-                found = self.live(name) or found
+                live = self.live(name)
             finally:
                 self._asked.discard(name)
+            if isinstance(live, SkippedName):
+                unusable = live
+            else:
+                found = live or found
         if found is not None:
             return found
         for star in self.star_imports:
             if (found := star(name)) is not None:
                 return found
-        return self.parent.lookup(name) if self.parent is not None else None
+        return (self.parent.lookup(name) if self.parent is not None else None) or unusable
 
     def _meaning(self, name: str, definitions: list[Definition]) -> Symbol:
         last = definitions[-1]

@@ -33,7 +33,7 @@ from optixc.frontend.symbols import (
 from optixc.ir import types as t
 from optixc.ir.programs import ProgramKind, program_kind
 
-_PYTHON_MODULES = frozenset({"math", "enum", "typing", "__future__"})
+PYTHON_MODULES = frozenset({"math", "enum", "typing", "__future__"})
 
 
 class Declarer:
@@ -110,7 +110,7 @@ class Declarer:
     def _import(self, scope: Declarations, name: str, node: ast.Import, alias: ast.alias) -> Symbol:
         if alias.name == "optixc":
             return OptixNamespace()
-        if alias.name in _PYTHON_MODULES:
+        if alias.name in PYTHON_MODULES:
             return PythonName(alias.name, "")
         if alias.name.startswith("optixc.") and alias.asname is None:
             return OptixNamespace()
@@ -128,7 +128,7 @@ class Declarer:
             found = attribute_of(OptixNamespace(), alias.name)
             if found is not None:
                 return found
-        if module in _PYTHON_MODULES and not node.level:
+        if module in PYTHON_MODULES and not node.level:
             return attribute_of(PythonName(module, ""), alias.name) or PythonName(module, alias.name)
         file = self.files.find(scope.file, module, node.level) if module else None
         if file is not None:
@@ -173,7 +173,7 @@ class Declarer:
         if isinstance(node.value, ast.Call):
             symbol = resolve_dotted(scope, node.value.func)
             if symbol == BuiltinName("launch_params"):
-                return self._launch_params(scope, node.value)
+                return self._launch_params(scope, name, node.value)
         annotation = node.annotation if isinstance(node, ast.AnnAssign) else None
         alias = resolve_dotted(scope, node.value) if isinstance(node.value, ast.Name | ast.Attribute) else None
         if alias is not None and not isinstance(alias, ConstantSymbol):
@@ -187,7 +187,10 @@ class Declarer:
             return SkippedName(name, "text", scope.span(node))
         return ConstantSymbol(node.value, annotation, scope.span(node), scope)
 
-    def _launch_params(self, scope: Declarations, call: ast.Call) -> Symbol:
+    def _launch_params(self, scope: Declarations, name: str, call: ast.Call) -> Symbol:
+        live = scope.live(name) if scope.live is not None else None
+        if isinstance(live, ParamsSymbol):
+            return ParamsSymbol(live.struct, scope.span(call))
         source = scope.file.source
         if len(call.args) != 1 or call.keywords:
             self.diagnostics.add(source, "OX205", call, "launch_params() takes one struct class", "launch_params(Params)")

@@ -1,7 +1,7 @@
 """Live functions: their source files are parsed whole, and names that the files do not explain are captured Python values.
 
 A function is found in its file by name and line, also inside another function or in a notebook cell (`linecache` holds cells). Numbers,
-enums, vectors, classes and functions that it captures become constants and symbols; nothing is called.
+enums, vectors, tuples, structs, classes, modules and functions that it captures become constants and symbols; nothing is called.
 """
 
 from __future__ import annotations
@@ -11,25 +11,30 @@ import enum
 import inspect
 import linecache
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from types import ModuleType
+from types import BuiltinFunctionType, ModuleType
 from typing import Any
 
 import numpy as np
 
 from optixc.frontend.builtin_names import SCALAR_TYPES, VECTOR_TYPES
-from optixc.frontend.builtin_symbols import builtin_symbol, enum_symbol
+from optixc.frontend.builtin_symbols import attribute_of, builtin_symbol, enum_symbol, python_builtin
 from optixc.frontend.conversions import weak_of
 from optixc.frontend.declarations import Declarations
-from optixc.frontend.declare import Declarer
+from optixc.frontend.declare import PYTHON_MODULES, Declarer
+from optixc.frontend.declare_class import declare_class
+from optixc.frontend.live_constants import constant_symbol
 from optixc.frontend.parse import ParsedFile, parse_text
 from optixc.frontend.source_file import Diagnostics, SourceFile
 from optixc.frontend.symbols import (
+    FileSymbol,
     FunctionSymbol,
     OptixNamespace,
     ParamsSymbol,
+    PythonName,
+    SkippedName,
     StructSymbol,
     Symbol,
     ValueSymbol,
@@ -65,6 +70,7 @@ class _Reader:
         self.diagnostics = diagnostics
         self._files: dict[str, ParsedFile | None] = {}
         self._bodies: dict[ast.AST, Declarations] = {}
+        self._structs: dict[ast.ClassDef, Symbol] = {}
 
     def function(self, function: Any) -> FunctionSymbol | None:
         """The symbol of a live function or of what our decorators made of one."""
@@ -89,18 +95,42 @@ class _Reader:
         return symbol if isinstance(symbol, FunctionSymbol) else self._no_source(name, "it is decorated by host code")
 
     def struct(self, kind: type[Any]) -> Symbol | None:
-        """The symbol of a live struct class, e.g. of an earlier notebook cell: its definition is looked up by name."""
-        cells = [name for name in linecache.cache if not name.endswith(".py") or "ipykernel" in name]
-        own = getattr(sys.modules.get(kind.__module__), "__file__", None)
-        for filename in ([own] if own else []) + cells[::-1]:
-            if f"class {kind.__name__}" not in "".join(linecache.getlines(filename)):
-                continue
-            file = self._file(filename, kind.__module__)
-            scope = self._scope(file, []) if file is not None else None
-            symbol = scope.lookup(kind.__name__) if scope is not None else None
-            if isinstance(symbol, StructSymbol):
-                return symbol
-        return None
+        """The symbol of a live struct class, e.g. of an earlier notebook cell or of a function that made it."""
+        origin = kind.__optixc_origin__
+        file = self._file(origin.file, kind.__module__)
+        path = _find(file.tree, kind.__name__, origin.line) if file is not None else None
+        if file is None or path is None:
+            return None
+        scope = self._scope(file, path[:-1])
+        assert isinstance(scope.live, _Captured)
+        scope.live.add_values(origin.names)
+        scope.live.add_values(vars(sys.modules[kind.__module__]) if kind.__module__ in sys.modules else {})
+        node = path[-1]
+        assert isinstance(node, ast.ClassDef)
+        if node not in self._structs:
+            self._structs[node] = declare_class(scope, node, self.diagnostics)
+        return self._structs[node]
+
+    def constant(self, name: str, value: Any) -> Symbol | None:
+        """A captured tuple, matrix or struct."""
+        return constant_symbol(name, value, self.struct, self.declarer)
+
+    def module(self, module: ModuleType) -> Symbol | None:
+        """A module under a live name: optixc, one of Python's that declarations may use, or a file of helpers."""
+        name = module.__name__
+        if name == "optixc":
+            return OptixNamespace()
+        if name in PYTHON_MODULES:
+            return PythonName(name, "")
+        if name == "optixc.stdlib":
+            return PythonName("optixc", "stdlib")
+        path = getattr(module, "__file__", None)
+        if path is None or name.split(".")[0] in sys.stdlib_module_names or not path.endswith(".py"):
+            return None
+        if not any(line.lstrip().startswith(("import optixc", "from optixc")) for line in linecache.getlines(path)):
+            return None
+        file = self._file(path, name)
+        return FileSymbol(self.declarer.declare_file(file)) if file is not None else None
 
     def _scope(self, file: ParsedFile, outer: list[ast.AST]) -> Declarations:
         """The scope that the functions inside `outer` share; each knows what all of them captured."""
@@ -130,11 +160,11 @@ class _Reader:
 
 
 def _find(tree: ast.Module, name: str, first_line: int) -> list[ast.AST] | None:
-    """The way from the module to the function of this name whose decorators or `def` begin in this line."""
+    """The way from the module to the function or class of this name whose decorators or `def` begin in this line."""
     pending: list[tuple[ast.AST, list[ast.AST]]] = [(tree, [])]
     while pending:
         node, path = pending.pop()
-        if isinstance(node, ast.FunctionDef):
+        if isinstance(node, ast.FunctionDef | ast.ClassDef):
             path = [*path, node]
             begin = min([node.lineno, *(decorator.lineno for decorator in node.decorator_list)])
             if node.name == name and begin <= first_line <= node.lineno:
@@ -158,8 +188,7 @@ class _Captured:
         if any(known is function for known in self._functions):
             return
         self._functions.append(function)
-        for name, value in function.__globals__.items():
-            self._values.setdefault(name, value)
+        self.add_values(function.__globals__)
         for name, cell in zip(function.__code__.co_freevars, function.__closure__ or (), strict=True):
             try:
                 value = cell.cell_contents
@@ -170,16 +199,29 @@ class _Captured:
             if inspect.isfunction(inner):
                 self.add(inner)
 
+    def add_values(self, values: Mapping[str, Any]) -> None:
+        """Know these names as well, unless they are known already."""
+        for name, value in values.items():
+            self._values.setdefault(name, value)
+
     def __call__(self, name: str) -> Symbol | None:
-        """What a captured name means, or None where it means nothing to shaders."""
+        """What a captured name means, None where there is none; a `SkippedName` says why a value means nothing to shaders."""
         if name not in self._values:
             return None
-        return self._symbol(self._values[name])
+        value = self._values[name]
+        found = self._symbol(value) or self._reader.constant(name, value)
+        if found is not None or python_builtin(name) is not None:
+            return found
+        if isinstance(value, ModuleType):
+            return SkippedName(name, f"the module `{value.__name__}`, which is host code", None)
+        return SkippedName(name, f"a Python value of type {type(value).__name__}", None)
 
     def _symbol(self, value: Any) -> Symbol | None:
         match value:
-            case ModuleType() if value.__name__ == "optixc":
-                return OptixNamespace()
+            case ModuleType():
+                return self._reader.module(value)
+            case BuiltinFunctionType(__module__="math", __name__=name):
+                return attribute_of(PythonName("math", ""), name)
             case enum.IntFlag():
                 return ValueSymbol(member_type(True, enum_symbol(type(value)).members), int(value))
             case bool() | int() | float():

@@ -11,6 +11,7 @@ import sys
 import weakref
 from collections.abc import Callable
 from dataclasses import dataclass
+from types import FrameType
 from typing import Any, Protocol, TypeVar, dataclass_transform, overload
 
 import numpy as np
@@ -72,6 +73,15 @@ class Layout:
 
 
 @dataclass(frozen=True)
+class Origin:
+    """Where a struct class was defined, and the numbers and classes that its annotations may have named if that was in a function."""
+
+    file: str
+    line: int
+    names: dict[str, Any]
+
+
+@dataclass(frozen=True)
 class StructField:
     """A struct inside another; keeps the very instance it was given and follows its changes."""
 
@@ -116,6 +126,7 @@ class _Structure:
 
     __optixc_layout__: Layout
     __optixc_kind__: str
+    __optixc_origin__: Origin
     _buffer: bytearray
     _observers: list[weakref.ref[Any]]
     _complete_for: object
@@ -244,7 +255,7 @@ def struct(cls: None = None) -> Decorator[T]: ...
 @dataclass_transform()
 def struct(cls: type[T] | None = None) -> type[T] | Decorator[T]:
     """A plain struct: launch parameters, SBT record data, local state."""
-    return _decorate(cls, "struct", sys._getframe(1).f_locals)
+    return _decorate(cls, "struct", sys._getframe(1))
 
 
 @overload
@@ -254,7 +265,7 @@ def payload(cls: None = None) -> Decorator[T]: ...
 @dataclass_transform()
 def payload(cls: type[T] | None = None) -> type[T] | Decorator[T]:
     """A ray payload: up to 32 words that travel in registers."""
-    return _decorate(cls, "payload", sys._getframe(1).f_locals)
+    return _decorate(cls, "payload", sys._getframe(1))
 
 
 @overload
@@ -264,22 +275,25 @@ def attributes(cls: None = None) -> Decorator[T]: ...
 @dataclass_transform()
 def attributes(cls: type[T] | None = None) -> type[T] | Decorator[T]:
     """Intersection attributes: up to 8 words from an intersection program to hit programs."""
-    return _decorate(cls, "attributes", sys._getframe(1).f_locals)
+    return _decorate(cls, "attributes", sys._getframe(1))
 
 
-def _decorate(cls: type[T] | None, kind: str, names: dict[str, Any]) -> type[T] | Decorator[T]:
+def _decorate(cls: type[T] | None, kind: str, frame: FrameType) -> type[T] | Decorator[T]:
+    names = dict(frame.f_locals)
+    kept = {} if frame.f_locals is frame.f_globals else {name: one for name, one in names.items() if isinstance(one, int | type)}
+    origin = Origin(frame.f_code.co_filename, frame.f_lineno, kept)
     if cls is None:
 
         def decorate(decorated: type[T]) -> type[T]:
-            return _make(decorated, kind, names)
+            return _make(decorated, kind, names, origin)
 
         return decorate
     if not isinstance(cls, type):
         raise TypeError(f"@optixc.{kind} decorates a class, not {cls!r}")
-    return _make(cls, kind, names)
+    return _make(cls, kind, names, origin)
 
 
-def _make(cls: type[T], kind: str, names: dict[str, Any]) -> type[T]:
+def _make(cls: type[T], kind: str, names: dict[str, Any], origin: Origin) -> type[T]:
     outer = next((base for base in cls.__mro__[1:] if issubclass(base, _Structure)), None)
     if outer is not None:
         raise TypeError(f"{cls.__name__}: @optixc.{kind} takes no class that inherits a struct; give it a field of type {outer.__name__}")
@@ -287,9 +301,8 @@ def _make(cls: type[T], kind: str, names: dict[str, Any]) -> type[T]:
     body = {name: value for name, value in vars(cls).items() if name not in ("__dict__", "__weakref__")}
     for field in layout.fields:
         body.pop(field.name, None)
-    body.update(
-        __qualname__=cls.__qualname__, __optixc_layout__=layout, __optixc_kind__=kind, dtype=layout.dtype, nbytes=layout.dtype.itemsize
-    )
+    body.update(__qualname__=cls.__qualname__, __optixc_layout__=layout, __optixc_kind__=kind, __optixc_origin__=origin)
+    body.update(dtype=layout.dtype, nbytes=layout.dtype.itemsize)
     body["__match_args__"] = tuple(field.name for field in layout.fields)
     made: Any = type(cls.__name__, (_Structure, *(base for base in cls.__bases__ if base is not object)), body)
     made.__optixc_field__ = StructField(made)
