@@ -10,7 +10,6 @@ import ast
 import io
 import json
 import os
-import shutil
 import sys
 from collections.abc import Sequence
 from pathlib import Path
@@ -67,7 +66,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except OSError as error:
         # Only standard output is written without a name; a flush at the end of the process would fail once more.
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-        print(f"optixc: standard output cannot be written: {error.strerror}", file=sys.stderr)
+        is_folder_gone = isinstance(error, FileNotFoundError)
+        reason = "the current folder is gone" if is_folder_gone else f"standard output cannot be written: {error.strerror}"
+        print(f"optixc: {reason}", file=sys.stderr)
         return EXIT_USAGE
     except KeyboardInterrupt:
         return EXIT_INTERRUPTED
@@ -179,24 +180,36 @@ def _write(chosen: argparse.Namespace, unit: driver.Unit, names: list[str], opti
     outputs = [stem.with_name(stem.name + suffix) for suffix in (".so", ".h", ".json")]
     try:
         stem.parent.mkdir(parents=True, exist_ok=True)
-        shutil.copyfile(built.library, outputs[0])
-        outputs[1].write_text(emit_header(emitted.pipeline, stem.name), encoding="utf-8")
-        outputs[2].write_text(json.dumps(_manifest(unit, emitted.pipeline, built), indent=2) + "\n", encoding="utf-8")
-        if chosen.depfile is not None:
-            files = [str(chosen.shader), *unit.result.dependencies]
-            chosen.depfile.write_text(
-                f"{' '.join(map(_make_word, map(str, outputs)))}: {' '.join(map(_make_word, dict.fromkeys(files)))}\n",
-                encoding="utf-8",
-                errors="surrogateescape",
-            )
     except OSError as error:
-        raise FileIoError(f"{error.filename or stem} cannot be written: {error.strerror}") from error
+        raise FileIoError(f"{stem.parent} cannot be made: {error.strerror}") from error
+    _put(outputs[0], Path(built.library).read_bytes())
+    _put(outputs[1], emit_header(emitted.pipeline, stem.name).encode(errors="surrogateescape"))
+    _put(outputs[2], (json.dumps(_manifest(unit, emitted.pipeline, built), indent=2) + "\n").encode())
+    if chosen.depfile is not None:
+        files = [str(chosen.shader), *unit.result.dependencies]
+        line = f"{' '.join(map(_make_word, map(str, outputs)))}: {' '.join(map(_make_word, dict.fromkeys(files)))}\n"
+        _put(chosen.depfile, os.fsencode(line))
     if outputs[0].with_suffix(".py").exists():
         print(
             f"optixc: warning: {outputs[0]} lies beside {outputs[0].with_suffix('.py').name}: Python's `import {stem.name}` would take it "
             "for an extension module; give -o another folder or name",
             file=sys.stderr,
         )
+
+
+def _put(path: Path, content: bytes) -> None:
+    """Writes a file whole or not at all: half of one would look finished to a build system, and a process may have the old one mapped."""
+    target = path.resolve()
+    fresh = target.parent / f".{target.name}.{os.getpid()}"
+    try:
+        if target.exists() and not target.is_file():
+            target.write_bytes(content)
+            return
+        fresh.write_bytes(content)
+        fresh.replace(target)
+    except OSError as error:
+        fresh.unlink(missing_ok=True)
+        raise FileIoError(f"{path} cannot be written: {error.strerror}") from error
 
 
 def _stem(chosen: argparse.Namespace) -> Path:

@@ -14,7 +14,8 @@ def digest(*parts: str | bytes) -> str:
     """A key for parts, which are kept apart from each other."""
     state = hashlib.sha256()
     for part in parts:
-        data = part.encode() if isinstance(part, str) else part
+        # Paths may hold bytes that are no text.
+        data = part.encode(errors="surrogateescape") if isinstance(part, str) else part
         state.update(len(data).to_bytes(8, "little"))
         state.update(data)
     return state.hexdigest()[:_KEY_LENGTH]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import json
 import os
 import subprocess
@@ -147,6 +148,40 @@ def test_an_output_that_cannot_be_written_is_no_traceback(shader: Path) -> None:
     with open("/dev/full", "w") as full:
         ended = subprocess.run(command, stdout=full, stderr=subprocess.PIPE, text=True, check=False)
     assert (ended.returncode, ended.stderr) == (cli.EXIT_USAGE, "optixc: standard output cannot be written: No space left on device\n")
+
+
+def test_a_disk_that_fills_up_leaves_the_old_output(
+    shader: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Half a library would look finished to make; the message names the output, not a file of the cache."""
+    assert cli.main(["shader.py", "-O1", "-o", "out/made"]) == 0
+    before = {path.name: path.read_bytes() for path in (tmp_path / "out").iterdir()}
+
+    def full(self: Path, content: bytes) -> int:
+        with open(self, "wb") as file:
+            file.write(content[:16])
+        raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC), str(self))
+
+    monkeypatch.setattr(Path, "write_bytes", full)
+    assert cli.main(["shader.py", "-O1", "-o", "out/made"]) == cli.EXIT_USAGE
+    assert capsys.readouterr().err == "optixc: out/made.so cannot be written: No space left on device\n"
+    monkeypatch.undo()
+    assert {path.name: path.read_bytes() for path in (tmp_path / "out").iterdir()} == before
+
+
+def test_a_name_that_is_no_text(shader: Path, tmp_path: Path) -> None:
+    path = tmp_path / os.fsdecode(b"gr\xf6sse.py")
+    path.write_text(SHADER)
+    assert cli.main([str(path), "-O1", "-o", "out/made", "--depfile", "out/made.d"]) == 0
+    assert b"gr\xf6sse.py" in (tmp_path / "out/made.d").read_bytes()
+
+
+def test_a_folder_that_is_gone(shader: Path, tmp_path: Path) -> None:
+    folder = tmp_path / "gone"
+    folder.mkdir()
+    command = f"rmdir ../gone; '{sys.executable}' -m optixc.cli ../shader.py"
+    ended = subprocess.run(["bash", "-c", command], cwd=folder, capture_output=True, text=True, check=False)
+    assert (ended.returncode, ended.stderr.splitlines()[-1]) == (cli.EXIT_USAGE, "optixc: the current folder is gone")
 
 
 def test_text_that_the_terminal_cannot_show(shader: Path) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import sys
 import threading
 import weakref
@@ -107,7 +108,7 @@ class Pipeline(Owned):
         self._lib = library.lib()
         ffi = library.ffi()
         made = ffi.new("OxrtPipeline*")
-        library.check(self._lib.oxrtPipelineLoad(context.handle, path.encode(), made))
+        library.check(self._lib.oxrtPipelineLoad(context.handle, os.fsencode(path), made))
         self._pipeline = made[0]
         self._checked_bound_values = report.get("bound_values", ()) if context.validation else ()
         self._done = ffi.new("int*")
