@@ -1,4 +1,7 @@
-"""Compile times: cold, one process each so that nothing is warm but the disk, and loads from the cache in a running process."""
+"""Compile times: cold, one process each so that nothing is warm but the disk, and loads from the cache in a running process.
+
+What a machine does once for each compiler and width is timed apart: asking the compiler for its version, and clang's precompiled header.
+"""
 
 from __future__ import annotations
 
@@ -10,6 +13,7 @@ import sys
 import tempfile
 import time
 from dataclasses import dataclass
+from pathlib import Path
 
 import optixc as ox
 from benchmarks.handwritten import ROOT, compilers
@@ -31,7 +35,7 @@ print(json.dumps([seconds, pipeline.report().compile_seconds, children.ru_utime 
 @dataclass
 class CompileTime:
     """Seconds: all of `pipeline_create` and `module_create` cold, the C++ compiler's part of it, that part's processor time (which
-    other work on the machine disturbs less), and the whole from the cache."""
+    other work on the machine disturbs less), the whole from the cache, and what the first compile of the machine takes more."""
 
     shader: str
     lanes: int
@@ -40,6 +44,7 @@ class CompileTime:
     cxx: float
     cxx_cpu: float
     cached: float
+    once: float
 
 
 _SHADERS = ROOT / "benchmarks" / "shaders"
@@ -63,15 +68,30 @@ def pipeline_of(context: ox.DeviceContext, shader: str, lanes: int) -> ox.Pipeli
 
 def measure(shader: str, lanes: int, compiler: str, rounds: int = 5) -> CompileTime:
     """Medians of `rounds` cold compiles and of as many loads."""
-    environment = os.environ | {"OPTIXC_CXX": compiler}
-    samples = []
+    samples, firsts = [], []
     for _ in range(rounds):
         with tempfile.TemporaryDirectory() as folder:
-            command = [sys.executable, "-c", _CODE, str(ROOT), folder, shader, str(lanes)]
-            answer = subprocess.run(command, capture_output=True, text=True, check=True, env=environment)
-            samples.append(json.loads(answer.stdout.splitlines()[-1]))
+            firsts.append(_cold(shader, lanes, compiler, folder))
+            _forget_pipelines(Path(folder))
+            samples.append(_cold(shader, lanes, compiler, folder))
     cold, cxx, cxx_cpu = (statistics.median(column) for column in zip(*samples, strict=True))
-    return CompileTime(shader, lanes, compiler, cold, cxx, cxx_cpu, _cached(shader, lanes, compiler, rounds))
+    once = statistics.median(first[0] - sample[0] for first, sample in zip(firsts, samples, strict=True))
+    return CompileTime(shader, lanes, compiler, cold, cxx, cxx_cpu, _cached(shader, lanes, compiler, rounds), once)
+
+
+def _cold(shader: str, lanes: int, compiler: str, folder: str) -> list[float]:
+    command = [sys.executable, "-c", _CODE, str(ROOT), folder, shader, str(lanes)]
+    environment = os.environ | {"OPTIXC_CXX": compiler}
+    answer = subprocess.run(command, capture_output=True, text=True, check=True, env=environment)
+    measured: list[float] = json.loads(answer.stdout.splitlines()[-1])
+    return measured
+
+
+def _forget_pipelines(folder: Path) -> None:
+    """Leaves only what the cache keeps of the compiler: its version and precompiled headers."""
+    for path in folder.iterdir():
+        if path.is_file() and path.name != "compilers.json":
+            path.unlink()
 
 
 def _cached(shader: str, lanes: int, compiler: str, rounds: int) -> float:

@@ -24,6 +24,7 @@ from optixc.stack_usage import read_frames
 
 MIN_CLANG = 16
 MIN_GCC = 12
+_GCC_WITHOUT_LIBRARY = 13
 _CANDIDATES = ("clang++", *(f"clang++-{n}" for n in range(21, MIN_CLANG - 1, -1)), "g++", *(f"g++-{n}" for n in range(15, MIN_GCC - 1, -1)))
 LANES_OF_TARGETS = {"x86-64": 1, "x86-64-v3": 8, "x86-64-v4": 16}
 """The levels of x86-64, each with the widest packet that it takes, the least first."""
@@ -120,6 +121,11 @@ def _arguments(compiler: Compiler, build: Build) -> tuple[str, ...]:
     return (*build.flags(), *whole_vectors(compiler.kind, build.target), *_QUIET)
 
 
+def _libraries(compiler: Compiler) -> tuple[str, ...]:
+    """What a shared object is linked to: libm. The linker need not read the C++ library, where the compiler can leave it out."""
+    return ("-lm", "-nostdlib++") if compiler.kind == "clang" or compiler.version >= (_GCC_WITHOUT_LIBRARY,) else ("-lm",)
+
+
 def find_compiler(memory: Path | None = None) -> Compiler:
     """The compiler to use: OPTIXC_CXX, else the first clang++ of at least 16 or g++ of at least 12 on PATH.
 
@@ -191,7 +197,7 @@ def compile_shared(text: str, output: Path, compiler: Compiler, build: Build, me
         source = output.with_suffix(".cpp") if build.debug else Path(folder) / "pipeline.cpp"
         source.write_text(text, encoding="utf-8", errors="surrogatepass")
         made = Path(folder) / "pipeline.so"
-        arguments = [*_arguments(compiler, build), "-fstack-usage", "-shared", str(source), "-o", str(made), "-lm"]
+        arguments = [*_arguments(compiler, build), "-fstack-usage", "-shared", str(source), "-o", str(made), *_libraries(compiler)]
         headers = _precompiled_headers(text, compiler, build, memory) if memory is not None else None
         try:
             _run(compiler, [*arguments, *(["-include-pch", str(headers)] if headers is not None else [])])
@@ -256,7 +262,7 @@ def compile_variants(variants: Sequence[tuple[str, Build]], output: Path, compil
         joined, exports, made = (Path(folder) / name for name in ("pipeline.cpp", "exports.map", "pipeline.so"))
         joined.write_text(_joined(len(variants)), encoding="ascii")
         exports.write_text(f"{{ global: {_SYMBOL}; local: *; }};\n", encoding="ascii")
-        link = ["-shared", f"-Wl,--version-script={exports}", str(joined), *objects, "-o", str(made), "-lm"]
+        link = ["-shared", f"-Wl,--version-script={exports}", str(joined), *objects, "-o", str(made), *_libraries(compiler)]
         _run(compiler, [*_arguments(compiler, variants[0][1]), *link])
         frames = read_frames(made.parent)
         os.replace(made, output)

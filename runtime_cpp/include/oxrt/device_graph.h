@@ -65,7 +65,9 @@ OXRT_INLINE void descend(GraphWalk& walk, const OxrtTraversableView* view, Quad 
         if (view->type != OXRT_TRAVERSABLE_STATIC && (!Programs::usesTime || hasVanished(*view, time)))
             return; /* without motion in the pipeline, motion transforms are not there */
         Columns inverse;
-        if (!inverseAt(*view, time, inverse))
+        if constexpr (!Programs::usesTime)
+            inverse = columnsOf(view->transformKeys + 12);
+        else if (!inverseAt(*view, time, inverse))
             return;
         origin = inverse.point(origin);
         direction = inverse.vector(direction);

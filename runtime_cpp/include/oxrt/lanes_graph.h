@@ -109,17 +109,21 @@ template <class Programs, bool ANY, int W, class Outer, class PacketRay>
 OXRT_INLINE void descend(GraphPacketWalk<W>& walk, const OxrtTraversableView* view, Lanes<bool, W> mask, Wide<float3, W> origin,
                          Wide<float3, W> direction, const PacketRay& parent, Outer& outer) {
     for (; view->child; view = view->child) {
-        if (view->type != OXRT_TRAVERSABLE_STATIC) {
-            if (!Programs::usesTime)
+        if constexpr (Programs::usesTime) {
+            if (view->type != OXRT_TRAVERSABLE_STATIC)
+                mask = without(mask, vanished(*view, walk.time));
+            MatrixLanes<W> inverses;
+            mask &= inversesAt(*view, mask, walk.time, inverses);
+            if (none(mask))
                 return;
-            mask = without(mask, vanished(*view, walk.time));
+            origin = pointThrough(inverses.m, origin);
+            direction = vectorThrough(inverses.m, direction);
+        } else {
+            if (view->type != OXRT_TRAVERSABLE_STATIC)
+                return;
+            origin = pointThrough(view->transformKeys + 12, origin);
+            direction = vectorThrough(view->transformKeys + 12, direction);
         }
-        MatrixLanes<W> inverses;
-        mask &= inversesAt(*view, mask, walk.time, inverses);
-        if (none(mask))
-            return;
-        origin = pointThrough(inverses.m, origin);
-        direction = vectorThrough(inverses.m, direction);
         walk.path.nodes[walk.path.size++] = view;
     }
     const bool moves = view->keyCount > 1;
