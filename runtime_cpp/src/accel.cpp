@@ -271,6 +271,7 @@ void Accel::update(std::span<const OxrtBuildInput> inputs)
         geometries[i]->update(inputs[i]);
         geometries[i]->refit(context->embree, scene, i);
         geometryViews[i].opacityMicromaps = geometries[i]->geometry().opacityMicromaps;
+        geometryViews[i].micromapStates = geometries[i]->geometry().micromapStates;
     }
     auto extra = static_cast<unsigned>(geometries.size());
     for (const auto& geometry : geometries)

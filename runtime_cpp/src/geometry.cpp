@@ -176,7 +176,7 @@ Geometry::Geometry(const Geometry& original)
       micromaps(original.micromaps)
 {
     describe();
-    view.opacityMicromaps = micromaps.data();
+    micromaps.describe(view);
 }
 
 // Where the arrays are that kernels read.
@@ -198,7 +198,7 @@ void Geometry::update(const OxrtBuildInput& input)
     } else if (inputType == OXRT_BUILD_INPUT_TRIANGLES) {
         copyTriangles(input);
         micromaps.copy(input);
-        view.opacityMicromaps = micromaps.data();
+        micromaps.describe(view);
     } else {
         copyBoxes(input);
     }

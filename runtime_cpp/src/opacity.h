@@ -21,9 +21,11 @@ public:
 
     const std::shared_ptr<Context> context;
     const std::vector<OxrtMicromapView>& maps() const { return views; }
+    // The first words are the states of triangles with predefined indices.
+    const std::uint32_t* states() const { return words.data(); }
 
 private:
-    Array<std::uint8_t> states;
+    Array<std::uint32_t> words;
     std::vector<OxrtMicromapView> views;
 };
 
@@ -36,8 +38,8 @@ public:
     void copy(const OxrtBuildInput& input);
     // Whether a build input has the micromaps that were copied.
     bool isSame(const OxrtBuildInput& input) const;
-    // Null without micromaps.
-    const OxrtMicromapView* data() const { return views.size() == 0 ? nullptr : views.data(); }
+    // What kernels read; null without micromaps.
+    void describe(OxrtGeometry& view) const;
     std::size_t bytes() const { return views.bytes(); }
 
 private:

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 from harness import Harness
-from scenes import CORNER, calls, gas, hitgroup, ias, instance, missed, ray, trace, triangles
+from scenes import CORNER, calls, gas, hitgroup, ias, instance, missed, ray, trace, translation, triangles
 
 import optixc as ox
 
@@ -109,6 +109,43 @@ def test_T223_known_points() -> None:
 def test_T225_two_states(harness: Harness, level: int) -> None:
     states = np.arange(4**level) % 2
     assert outcomes(shoot(harness, [gas(mapped(states, level, TWO))], level)) == "".join("-o"[state] for state in states)
+
+
+@pytest.mark.parametrize("level", [2, 4, 6, 7, 9])
+@pytest.mark.parametrize("kind", [TWO, FOUR])
+def test_T225_T226_states_of_fine_maps(harness: Harness, kind: Any, level: int) -> None:
+    random = np.random.default_rng(226 + level)
+    states = random.integers(0, 2 * int(kind), 4**level)
+    chosen = random.choice(4**level, 200, replace=4**level < 200)
+    rays = [ray((float(u), float(v), 1.0)) for u, v in centroids(level)[chosen]]
+    results = trace(harness, [gas(mapped(states, level, kind))], rays, micromaps=True)
+    assert outcomes(results) == "".join("-oaa"[states[i]] for i in chosen)
+
+
+def test_neighbouring_rays_meet_unlike_maps(harness: Harness) -> None:
+    random = np.random.default_rng(227)
+    right = [[2.0, 0.0, 0.0], [3.0, 0.0, 0.0], [2.0, 1.0, 0.0]]
+    coarse, fine = random.integers(0, 4, 4), random.integers(0, 2, 4**5)
+    scene = [
+        gas(mapped(coarse, 1), mapped(fine, 5, TWO, corners=right), name="both"),
+        gas(mapped(fine, 5, TWO), triangles(right), name="one", build_flags=ALLOW_DISABLE),
+        ias(
+            instance("both"),
+            instance("both", translation(4.0, 0.0, 0.0), flags=INSTANCE_2_STATE),
+            instance("one", translation(8.0, 0.0, 0.0)),
+            instance("one", translation(12.0, 0.0, 0.0), flags=INSTANCE_DISABLE),
+        ),
+    ]
+    points = random.dirichlet((1, 1, 1), 300)[:, 1:].astype(np.float32)
+    places = random.integers(0, 8, 300)
+    rays = [ray((float(u + 2 * x), float(v), 1.0), root="ias") for (u, v), x in zip(points, places, strict=True)]
+    results = trace(harness, scene, rays, [hitgroup(0), hitgroup(1)], micromaps=True)
+    expected = ""
+    for (u, v), place in zip(points, places, strict=True):
+        rough = coarse[int(ox.barycentrics_to_micromap_index(u, v, 1))]
+        exact = fine[int(ox.barycentrics_to_micromap_index(u, v, 5))]
+        expected += ("-oaa"[rough], "-o"[exact], "-o-o"[rough], "-o"[exact], "-o"[exact], "a", "a", "a")[place]
+    assert outcomes(results) == expected
 
 
 def test_T226_T228_T229_four_states(harness: Harness) -> None:

@@ -3,6 +3,7 @@
 #define OXRT_LANES_CANDIDATE_H
 
 #include <oxrt/lanes_loops.h>
+#include <oxrt/lanes_opacity.h>
 #include <oxrt/lanes_records.h>
 
 namespace oxrt {
@@ -144,11 +145,13 @@ template <class Programs, bool MAY_CULL, int W> void filterCandidates(const RTCF
     ray.objectRay = static_cast<typename CandidateLanes<W>::PacketRay*>(arguments->ray);
     ray.t = packetLanes<W>(ray.objectRay->tfar);
     enterHits(ray, offered);
-    // the geometry's, the instance's and the ray's word on culling and any-hit programs
-    const Lanes<uint32_t, W> flags = geometryFlags(ray);
+    // the geometry's, the instance's, the micromap's and the ray's word on culling and any-hit programs
+    Lanes<uint32_t, W> flags = geometryFlags(ray);
     const Lanes<uint32_t, W> instanceFlags = instanceField<uint32_t>(ray, OXRT_FIELD_OFFSET(OxrtInstanceView, flags), 0u);
-    const Lanes<bool, W> runs = anyHitEnabled(ray, instanceFlags, flags);
     Lanes<bool, W> accepted = offered;
+    if constexpr (Programs::Scalar::usesMicromaps)
+        accepted = passesMicromaps(ray, offered, instanceFlags, flags);
+    const Lanes<bool, W> runs = anyHitEnabled(ray, instanceFlags, flags);
     if constexpr (MAY_CULL)
         accepted = without(accepted, culledLanes(ray, instanceFlags, flags, runs));
     Lanes<bool, W> stopped = false;

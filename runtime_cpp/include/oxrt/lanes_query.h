@@ -325,7 +325,7 @@ __attribute__((noinline)) FoundLanes<typename Programs::Payload, W> traverseApar
                                                                                   typename Programs::Payload& payload, bool isCoherent) {
     using Scalar = typename Programs::Scalar;
     Lanes<bool, W> hit;
-    const uint32_t calling = OXRT_SCENE_HAS_SPHERES | OXRT_SCENE_HAS_CURVES | OXRT_SCENE_HAS_MICROMAPS |
+    const uint32_t calling = OXRT_SCENE_HAS_SPHERES | OXRT_SCENE_HAS_CURVES |
                              (Scalar::hasIntersection ? uint32_t(OXRT_SCENE_HAS_CUSTOM) : 0u);
     bool isPacket = ray.paths && isCoherent && !(ray.root->needs & calling);
     if constexpr (mayHaveCandidates<Scalar, Flags>)
@@ -360,7 +360,7 @@ OXRT_INLINE Lanes<bool, W> traverse(RayLanes<W>& ray, Lanes<bool, W> mask, typen
             if (mayFilter<Scalar>(ray.flags, *ray.root)) {
                 calls = true;
                 const bool isDivergent = !isCoherent && !(needs & OXRT_SCENE_HAS_CUSTOM);
-                isApart = isApart || isDivergent || (needs & OXRT_SCENE_HAS_CURVES) || Scalar::usesMicromaps;
+                isApart = isApart || isDivergent || (needs & OXRT_SCENE_HAS_CURVES);
             }
         if (calls && !isApart)
             return traverseCandidates<Programs, Flags, ANY>(ray, mask, payload, isCoherent);

@@ -13,7 +13,7 @@
 extern "C" {
 #endif
 
-enum { OXRT_PIPELINE_ABI = 5 };
+enum { OXRT_PIPELINE_ABI = 6 };
 
 /* ---- SBT records -------------------------------------------------------------------------------------------------------------- */
 
@@ -40,12 +40,11 @@ enum { OXRT_PRIMITIVE_CUSTOM = 0x2500, OXRT_PRIMITIVE_QUADRATIC_BSPLINE = 0x2501
        OXRT_PRIMITIVE_CUBIC_BSPLINE_ROCAPS = 0x2509, OXRT_PRIMITIVE_CATMULL_ROM_ROCAPS = 0x250A,
        OXRT_PRIMITIVE_CUBIC_BEZIER_ROCAPS = 0x250B, OXRT_PRIMITIVE_TRIANGLE = 0x2531 };
 
-/* The opacity of a triangle. states: 4^level of 1 bit, or of 2 bits if isFourState. NULL: `state` for the whole triangle. */
+/* The opacity of a triangle: 4^level states of 1 bit, or of 2 bits in the format of four states, row after row along u from v = 0 on, in
+   each square the lower micro-triangle first. */
 typedef struct OxrtMicromapView {
-    const uint8_t* states;
-    uint8_t level;
-    uint8_t isFourState;
-    uint8_t state;
+    uint32_t firstWord; /* of the geometry's micromapStates */
+    uint32_t shape;     /* the bits of the float 2^level, and 1 more with four states */
 } OxrtMicromapView;
 
 enum { OXRT_OPACITY_TRANSPARENT = 0, OXRT_OPACITY_OPAQUE = 1, OXRT_OPACITY_UNKNOWN_TRANSPARENT = 2, OXRT_OPACITY_UNKNOWN_OPAQUE = 3 };
@@ -73,6 +72,7 @@ typedef struct OxrtGeometry {
     uint64_t vertexCount;          /* vertices (or boxes) per key; key k begins vertexCount * k further */
     const uint32_t* indices;       /* triangles: 3 per primitive, never NULL; curves: first control point; else NULL */
     const OxrtMicromapView* opacityMicromaps; /* one per primitive; NULL without */
+    const uint32_t* micromapStates;
     const OxrtOwnShape* ownShape;  /* not NULL: Embree's intersection callbacks hand over to it */
     const float* widths;           /* ribbons: 8 floats per primitive and key: unit vectors across, at the beginning and at the end of each
                                       segment, and how much of the way along the axis is added from the one and from the other */
