@@ -144,6 +144,8 @@ class DeviceContext(Context):
             path = getattr(source, "__file__", None)
             if path is None:
                 raise InvalidValueError(f"module {source.__name__} has no file; pass a list of its programs instead")
+            if not path.endswith(".py"):
+                raise InvalidValueError(f"module {source.__name__} comes from {path}, which is no Python source; pass its path")
             return driver.open_file(Path(path), include_dirs, self.cache)
         if isinstance(source, str | Path):
             return driver.open_file(Path(source), include_dirs, self.cache)

@@ -102,15 +102,17 @@ def open_file(path: Path, include_dirs: Sequence[Path], store: Cache) -> Unit:
     """The module of a shader file; the front end runs only if the cache does not know the file's text. Raises CompileError."""
     key = _file_key(path, include_dirs)
     note = store.read_note(key)
-    if note is not None:
+    if note is not None and not any(Path(one).is_file() for one in note["absent"]):
         current = _dependencies_key(key, note["dependencies"])
         if current is not None and current == note["key"]:
-            return Unit(path.stem, note["programs"], current, lambda: _again(path, include_dirs, current))
+            places = _places(path, include_dirs)
+            return Unit(path.stem, note["programs"], current, lambda: _again(path, include_dirs, places, current))
     result = compile_file(str(path), include_dirs=tuple(str(folder) for folder in include_dirs))
     full_key = _dependencies_key(key, result.dependencies)
     programs = describe_programs(result.module)
     if full_key is not None:
-        store.write_note(key, {"dependencies": list(result.dependencies), "key": full_key, "programs": programs})
+        found = {"dependencies": list(result.dependencies), "absent": list(result.absent)}
+        store.write_note(key, {**found, "key": full_key, "programs": programs})
     unit = Unit(path.stem, programs, full_key, lambda: result)
     return unit
 
@@ -389,8 +391,15 @@ def _describe_bound(modules: Sequence[nodes.Module], params: t.Struct | None, op
     return described
 
 
-def _again(path: Path, include_dirs: Sequence[Path], expected: str) -> FrontendResult:
-    """The front end's result for a file that only the cache had looked at."""
+def _places(path: Path, include_dirs: Sequence[Path]) -> list[Path]:
+    """The file and the folders, whatever the current folder will be."""
+    return [path.absolute(), *(folder.absolute() for folder in include_dirs)]
+
+
+def _again(path: Path, include_dirs: Sequence[Path], places: list[Path], expected: str) -> FrontendResult:
+    """The front end's result for a file that only the cache had looked at; `places` are those of then."""
+    if _places(path, include_dirs) != places:
+        path, *include_dirs = places
     result = compile_file(str(path), include_dirs=tuple(str(folder) for folder in include_dirs))
     if _dependencies_key(_file_key(path, include_dirs), result.dependencies) != expected:
         raise InvalidOperationError(f"{path} or a file that it imports changed since module_create; create the module again")
@@ -410,7 +419,7 @@ def _surroundings(plan: toolchain.Build) -> tuple[str, ...]:
 
 def _file_key(path: Path, include_dirs: Sequence[Path]) -> str:
     """The key of a file's own text, and of where its imports are looked for."""
-    return digest("file", _compiler_stamp(), str(path.absolute()), *map(str, include_dirs), _read(path))
+    return digest("file", _compiler_stamp(), *map(str, _places(path, include_dirs)), _read(path))
 
 
 def _dependencies_key(key: str, dependencies: Sequence[str]) -> str | None:

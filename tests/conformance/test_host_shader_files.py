@@ -5,6 +5,7 @@ from __future__ import annotations
 import sys
 import time
 from pathlib import Path
+from types import ModuleType
 from typing import Any
 
 import numpy as np
@@ -97,7 +98,9 @@ def test_missing_files_and_wrong_sources(tmp_path: Path) -> None:
     context = ox.DeviceContext(cache_dir=tmp_path / "cache")
     with pytest.raises(ox.FileIoError, match="cannot be read"):
         context.module_create(tmp_path / "none.py")
-    for wrong in ([], 3, None, sys):
+    compiled = ModuleType("compiled")
+    compiled.__file__ = "compiled.pyc"
+    for wrong in ([], 3, None, sys, compiled):
         with pytest.raises(ox.InvalidValueError):
             context.module_create(wrong)
 
@@ -147,6 +150,42 @@ def test_changes_are_noticed(tmp_path: Path, what: str) -> None:
         module = context.module_create(path)
         raygen = context.program_group_create(raygen=module["__raygen__fill"])
         assert not context.pipeline_create([raygen], math="fast").report().cache_hit
+
+
+def test_where_imports_are_looked_for_is_noticed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """One name of an include folder in two current folders; then a helper that comes first in the order of search."""
+    path = shader(tmp_path)
+    (tmp_path / "shade.py").unlink()
+    for number in (1, 2):
+        (tmp_path / str(number) / "include").mkdir(parents=True)
+        (tmp_path / str(number) / "include" / "shade.py").write_text(HELPER.replace("2.0", f"{number}.0"))
+
+    def second_value() -> float:
+        context = ox.DeviceContext(cache_dir=tmp_path / "cache")
+        module = context.module_create(path, include_dirs=["include"])
+        monkeypatch.chdir(tmp_path)
+        raygen = context.program_group_create(raygen=module["__raygen__fill"])
+        values = np.zeros(2, np.float32)
+        context.pipeline_create([raygen]).launch(Params(values), ox.ShaderBindingTable(raygen=raygen.record()), 2)
+        return float(values[1])
+
+    for folder, expected in (("1", 1.0), ("2", 2.0), ("1", 1.0)):
+        monkeypatch.chdir(tmp_path / folder)
+        assert second_value() == expected
+    monkeypatch.chdir(tmp_path / "2")
+    (tmp_path / "shade.py").write_text(HELPER.replace("2.0", "7.0"))
+    assert second_value() == 7.0
+
+
+def test_a_folder_is_left_between_module_and_pipeline(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    context = ox.DeviceContext(cache_dir=tmp_path / "cache")
+    shader(tmp_path)
+    monkeypatch.chdir(tmp_path)
+    filled(context, Path("shader.py"))
+    module = context.module_create("shader.py")
+    monkeypatch.chdir("/")
+    raygen = context.program_group_create(raygen=module["__raygen__fill"])
+    assert not context.pipeline_create([raygen], math="fast").report().cache_hit
 
 
 def test_a_file_that_changes_between_module_and_pipeline(tmp_path: Path) -> None:

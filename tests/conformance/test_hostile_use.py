@@ -116,7 +116,7 @@ def test_what_a_shader_file_defines_is_copied_and_pickled() -> None:
     for one in (random.pcg32_float, missing_arrays.__raygen__read):
         assert copy.deepcopy(one) is one and pickle.loads(pickle.dumps(one)) is one
     for parameters in (copy.deepcopy(missing_arrays.params), pickle.loads(pickle.dumps(missing_arrays.params))):
-        with pytest.raises(ox.InvalidOperationError, match="Params.scene cannot be read here"):
+        with pytest.raises(ox.InvalidOperationError, match=r"Params\.scene cannot be read here"):
             _ = parameters.scene
 
 

@@ -155,6 +155,22 @@ def test_include_folders_come_after_the_shader_folder(tmp_path: Path) -> None:
     assert compile_file(tmp_path / "shader.py", [tmp_path / "include"]).dependencies == (str(tmp_path / "lib.py"),)
 
 
+def test_relative_imports(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """From the package itself, from outside of the current folder, and beside the file that a link leads to."""
+    (tmp_path / "pack" / "inner").mkdir(parents=True)
+    (tmp_path / "pack" / "__init__.py").write_text("def value():\n    return 1\n")
+    (tmp_path / "pack" / "inner" / "lib.py").write_text("from ...pack import value\ndef twice():\n    return 2 * value()\n")
+    shader = tmp_path / "pack" / "inner" / "shader.py"
+    shader.write_text("from . import lib\nfrom .. import value\n" + HEAD + "    x = value() + lib.twice()\n")
+    files = [str(tmp_path / "pack" / one) for one in ("__init__.py", "inner/lib.py")]
+    (tmp_path / "link.py").symlink_to(shader)
+    for folder, path in ((shader.parent, "shader.py"), (tmp_path / "pack", "inner/shader.py"), (tmp_path, str(shader))):
+        monkeypatch.chdir(folder)
+        assert sorted(compile_file(path).dependencies) == files
+    monkeypatch.chdir(tmp_path)
+    assert str(tmp_path / "pack" / "inner" / "lib.py") in compile_file("link.py").dependencies
+
+
 def test_all_errors_in_one_run() -> None:
     assert errors_of(HEAD + "    a = one\n    b = two\n    c = a + b\n    d = three\n") == ["OX301", "OX301", "OX301"]
 

@@ -26,11 +26,12 @@ from optixc.source import Span
 
 @dataclass(frozen=True)
 class FrontendResult:
-    """The module, what the interpreter needs, and every file that was read besides the first."""
+    """The module, what the interpreter needs, every file that was read besides the first, and those that would have been but are not."""
 
     module: Module
     checked: Checked
     dependencies: tuple[str, ...]
+    absent: tuple[str, ...]
 
 
 def compile_file(path: str | Path, include_dirs: Sequence[str | Path] = ()) -> FrontendResult:
@@ -128,7 +129,7 @@ def _compile(
     dependencies = tuple(declarer.files.dependencies)
     structs = tuple(symbol.type for symbol in structs_of(scope))
     checked = Checked(name, source.path, structs, checker.params, instances, _reached(instances), dependencies)
-    return FrontendResult(lower(checked), checked, dependencies)
+    return FrontendResult(lower(checked), checked, dependencies, tuple(declarer.files.absent))
 
 
 def _params_of(scope: Declarations) -> t.Struct | None:

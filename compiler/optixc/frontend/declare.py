@@ -130,7 +130,7 @@ class Declarer:
                 return found
         if module in PYTHON_MODULES and not node.level:
             return attribute_of(PythonName(module, ""), alias.name) or PythonName(module, alias.name)
-        file = self.files.find(scope.file, module, node.level) if module else None
+        file = self.files.find(scope.file, module, node.level)
         if file is not None:
             symbol = self.declare_file(file).lookup(alias.name)
             if symbol is not None:

@@ -127,7 +127,9 @@ class _Reader:
         path = getattr(module, "__file__", None)
         if path is None or name.split(".")[0] in sys.stdlib_module_names or not path.endswith(".py"):
             return None
-        if not any(line.lstrip().startswith(("import optixc", "from optixc")) for line in linecache.getlines(path)):
+        lines = linecache.getlines(path, vars(module))
+        is_installed = not {"site-packages", "dist-packages"}.isdisjoint(Path(path).parts)
+        if is_installed and not any(line.lstrip().startswith(("import optixc", "from optixc")) for line in lines):
             return None
         file = self._file(path, name)
         return FileSymbol(self.declarer.declare_file(file)) if file is not None else None
