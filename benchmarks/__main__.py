@@ -26,7 +26,7 @@ def _numbers(text: str) -> tuple[int, ...]:
 def _arguments() -> argparse.Namespace:
     parser = argparse.ArgumentParser(prog="python -m benchmarks", description=__doc__)
     parser.add_argument("--only", action="append", default=[], metavar="ROW", help="a row, `path` or `path:sponza`; may be repeated")
-    parser.add_argument("--parts", default=None, help=f"comma-separated, of {', '.join(PARTS)} (default: all; with --only: rays)")
+    parser.add_argument("--parts", default=None, help=f"comma-separated, of {', '.join(PARTS)} (default: all; with --only: rays, limits)")
     parser.add_argument("--threads", type=_numbers, default=(1, 2), help="comma-separated numbers of threads (default 1,2)")
     parser.add_argument("--rounds", type=int, default=7, help="interleaved rounds (default 7)")
     parser.add_argument("--lanes", type=_numbers, default=(1, 8, 16), help="widths of ours (default 1,8,16)")
@@ -38,7 +38,7 @@ def _arguments() -> argparse.Namespace:
     return parser.parse_args()
 
 
-def _measure_rays(arguments: argparse.Namespace, results: Results) -> None:
+def _measure_rays(arguments: argparse.Namespace, results: Results, with_limits: bool) -> None:
     settings = Settings(
         rounds=arguments.rounds,
         lanes=arguments.lanes,
@@ -59,6 +59,9 @@ def _measure_rays(arguments: argparse.Namespace, results: Results) -> None:
             continue
         results.rows.append(row)
         progress.write(row_details(row) + "\n")
+        # In the same minute as the row: the machine's speed changes.
+        if with_limits and threads == 1:
+            results.limits.append(limits.measure(embrees[1], workload, scene))
 
 
 def _measure_limits(arguments: argparse.Namespace, results: Results) -> None:
@@ -88,21 +91,21 @@ def _measure_others(arguments: argparse.Namespace, parts: list[str], results: Re
 
 def main() -> None:
     arguments = _arguments()
-    default = "rays" if arguments.only else ",".join(PARTS)
+    default = "rays,limits" if arguments.only else ",".join(PARTS)
     parts = (arguments.parts or default).split(",")
     for part in parts:
         if part not in PARTS:
             raise SystemExit(f"no such part: {part}; there are {', '.join(PARTS)}")
     results = Results(machine.describe())
     if "rays" in parts:
-        _measure_rays(arguments, results)
-    if "limits" in parts:
+        _measure_rays(arguments, results, with_limits="limits" in parts)
+    if "limits" in parts and not results.limits:
         _measure_limits(arguments, results)
     _measure_others(arguments, parts, results)
     json_path, page, picture = (arguments.output.with_suffix(suffix) for suffix in (".json", ".md", ".png"))
     results.write(json_path)
     page.write_text(markdown(results))
-    print(summary(results.rows) if results.rows else markdown(results))
+    print(summary(results) if results.rows else markdown(results))
     print(f"\n{json_path}\n{page}")
     if results.rows and plot.draw(results, picture):
         print(picture)

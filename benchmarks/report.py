@@ -64,28 +64,48 @@ def _ratio(row: Row, prefix: str, over: str = "scalar") -> str:
     return f"{max(found):.2f}" if found else "-"
 
 
-def summary(rows: list[Row]) -> str:
-    """One line a row: ours over the best scalar and over the best packet kernel."""
+def summary(results: Results) -> str:
+    """A table for each number of threads."""
+    numbers = sorted({row.threads for row in results.rows})
+    tables = [(number, _summary([row for row in results.rows if row.threads == number], results.limits)) for number in numbers]
+    return "\n\n".join(f"### {number} thread{'s' if number > 1 else ''}\n\n{text}" for number, text in tables)
+
+
+_WIDTHS = (1, 8, 16)
+
+
+def _summary(rows: list[Row], limits: list[Limit]) -> str:
+    """One line a row: ours over the best scalar and over the best packet kernel, and the part of pure traversal that is reached."""
     titles = {workload.name: workload.title for workload in WORKLOADS}
+    # Limits are those of one thread.
+    known = {(limit.workload, limit.scene): limit.mrays_per_second for limit in limits if rows[0].threads == 1}
     lines = []
     for row in rows:
         packets = [entry.over_scalar for entry in row.entries if entry.name == row.best_packet]
         scalar = row.entry(row.best_scalar)
+        limit = known.get((row.workload, row.scene))
         lines.append(
             [
                 f"{titles[row.workload]}: {row.scene}",
-                str(row.threads),
                 f"{scalar.mrays_per_second:.2f}" if scalar else "-",
                 f"{packets[0]:.2f}" if packets else "-",
-                *(_ratio(row, f"ours {lanes}") for lanes in (1, 8, 16)),
-                _ratio(row, "ours 1", "tuned"),
+                *(_ratio(row, f"ours {lanes}") for lanes in _WIDTHS),
                 f"{row.must:g} / {row.aim:g}",
-                _ratio(row, "ours 16", "packet"),
+                _ratio(row, "ours 1", "tuned"),
+                *(_ratio(row, f"ours {lanes}", "packet") for lanes in _WIDTHS[1:]),
+                *([f"{limit:.2f}", *(_part(row, f"ours {lanes}", limit) for lanes in _WIDTHS)] if limit else ["-"] * 4 if known else []),
             ]
         )
-    header = ["workload", "threads", "best scalar, Mrays/s", "best packet", "ours 1", "ours 8", "ours 16"]
-    header += ["ours 1 / tuned", "must / aim", "ours 16 / packet"]
+    header = ["workload", "scalar C++, Mrays/s", "packet C++", "ours 1", "ours 8", "ours 16", "must / aim", "1 / tuned C++"]
+    header += ["8 / packet C++", "16 / packet C++"]
+    header += ["limit, Mrays/s", "1 reaches", "8 reaches", "16 reaches"] if known else []
     return table(header, lines)
+
+
+def _part(row: Row, name: str, limit: float) -> str:
+    """Which part of the limit the fastest of ours of that width reaches."""
+    found = [entry.mrays_per_second for entry in row.entries if entry.name == name or entry.name.startswith(name + " ")]
+    return f"{max(found) / limit:.2f}" if found else "-"
 
 
 def _limits(results: Results) -> str:
@@ -137,7 +157,7 @@ def markdown(results: Results) -> str:
     """Everything, the summary first."""
     parts = ["# Measurements", "\n".join(f"- {key}: {value}" for key, value in results.machine.items())]
     if results.rows:
-        parts += ["## Speed-up over the best hand-written scalar kernel", summary(results.rows)]
+        parts += ["## Speed over the best hand-written scalar kernel", summary(results)]
     if results.peers:
         lines = [
             [one.name, str(one.threads), f"{one.mrays_per_second:.2f}", "yes" if one.shader else "no", f"{one.ours:.2f}"]
