@@ -77,6 +77,8 @@ def test_missing_unknown_and_doubled_fields_are_type_errors() -> None:
         Camera((1, 2, 3), eye=0)  # type: ignore[misc]
     with pytest.raises(AttributeError, match="no field 'focus'"):
         Camera(0).focus = 3  # type: ignore[attr-defined]
+    with pytest.raises(AttributeError, match="a field of Camera cannot be deleted"):
+        del Camera(0).fov
 
 
 @pytest.mark.parametrize(

@@ -166,6 +166,9 @@ class _Structure:
         if self._observers:
             _tell(self)
 
+    def __delattr__(self, name: str) -> None:
+        raise AttributeError(f"a field of {type(self).__name__} cannot be deleted; its bytes are part of the struct")
+
     def packed(self) -> bytearray:
         """The bytes of this struct, always up to date; do not write to them."""
         return self._buffer
