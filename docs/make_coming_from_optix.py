@@ -1,6 +1,7 @@
-"""Writes docs/coming_from_optix.md: every OptiX host and device function with its name here, its status and what differs.
+"""Writes docs/coming_from_optix.md: every OptiX host and device function and struct with its name here, its status and what differs.
 
-Device functions come from the compiler's one table, host functions from the table below, whose names a test looks up.
+Device functions come from the compiler's one table, host functions from the table below, structs from optix_structs; a test looks their
+names up.
 Run `python docs/make_coming_from_optix.py` after a change of either.
 """
 
@@ -8,6 +9,8 @@ from __future__ import annotations
 
 import re
 from pathlib import Path
+
+import optix_structs
 
 from optixc.ir.intrinsic_rows import INTRINSICS, ROWS
 from optixc.ir.intrinsics import Intrinsic
@@ -118,9 +121,9 @@ _RENAMED = {
 _NUMBERED = re.compile(r"_\d+$")
 INTRODUCTION = """# Coming from OptiX
 
-Every host and device function of OptiX, its name here, whether it is there, and what differs. The rule for names: drop `optix`, write
-the rest in snake case; enums keep OptiX's values (`OptixRayFlags` is `ox.RayFlags`). Kinds of programs: RG raygen, IS intersection, AH
-any-hit, CH closest-hit, MS miss, EX exception, DC direct callable, CC continuation callable.
+Every host function, device function and struct of OptiX, its name here, whether it is there, and what differs. The rule for names: drop
+`optix`, write the rest in snake case; enums keep OptiX's values (`OptixRayFlags` is `ox.RayFlags`). Kinds of programs: RG raygen,
+IS intersection, AH any-hit, CH closest-hit, MS miss, EX exception, DC direct callable, CC continuation callable.
 
 What surprises most:
 
@@ -142,6 +145,7 @@ def page() -> str:
     """The text of the page."""
     lines = [INTRODUCTION, "## Host functions", "", "| OptiX | here | there | difference |", "|---|---|---|---|"]
     lines += [f"| {optix} | {f'`{name}`' if name else ''} | {status} | {difference} |" for optix, name, status, difference in HOST]
+    lines += optix_structs.section()
     lines += ["", "## Device functions", "", "| OptiX | here | in | there | remark |", "|---|---|---|---|---|"]
     seen: set[str] = set()
     for row in ROWS:

@@ -130,6 +130,14 @@ REFUSED: dict[str, tuple[Callable[[ox.DeviceContext], Any], str]] = {
     "no curve type": (strand(kind=ox.PrimitiveType.TRIANGLE), "curve_type"),
     "unknown end caps": (strand(endcap_flags=2), "endcap_flags"),
     "two flag words of a curve": (strand(flags=[0, 0]), "flags"),
+    "rows in place of an array": (
+        lambda c: c.accel_build([ox.BuildInputTriangles(POINTS.tolist())]), r"vertices .* not a list of list; make one with numpy.array"
+    ),
+    "one number for all radii": (lambda c: c.accel_build([ox.BuildInputSpheres(POINTS, [0.5])]), "radii takes .* not a list of float"),
+    "inputs of two types": (
+        lambda c: c.accel_build([ox.BuildInputTriangles(POINTS, CORNERS), ox.BuildInputInstances([])]),
+        "input 1 is a BuildInputInstances but input 0 a BuildInputTriangles"
+    ),
     "vertex past the end": (lambda c: c.accel_build([ox.BuildInputTriangles(POINTS, np.uint32([[0, 1, 4]]))]), "4 vertices"),
     "micromap past the end": (micromaps(np.int32([1])), "the array holds 1"),
     "micromap below the predefined ones": (micromaps(np.int32([-5])), "predefined ones are -1 to -4"),

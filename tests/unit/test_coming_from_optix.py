@@ -2,8 +2,12 @@
 
 from __future__ import annotations
 
-import importlib.util
+import importlib
+import inspect
+import re
+import sys
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -11,12 +15,17 @@ import optixc as ox
 from optixc.host.groups import Module
 from optixc.host.tasks import Task
 
-SCRIPT = Path(__file__).parents[2] / "docs" / "make_coming_from_optix.py"
-_spec = importlib.util.spec_from_file_location("make_coming_from_optix", SCRIPT)
-assert _spec is not None
-assert _spec.loader is not None
-maker = importlib.util.module_from_spec(_spec)
-_spec.loader.exec_module(maker)
+sys.path.insert(0, str(Path(__file__).parents[2] / "docs"))
+maker = importlib.import_module("make_coming_from_optix")
+optix_structs = importlib.import_module("optix_structs")
+sys.path.pop(0)
+
+
+def look_up(name: str) -> Any:
+    found: Any = {"Module": Module, "Task": Task}.get(name.split(".")[0], ox)
+    for part in name.split(".") if found is ox else name.split(".")[1:]:
+        found = getattr(found, part)
+    return found
 
 
 def test_the_page_is_up_to_date() -> None:
@@ -25,9 +34,21 @@ def test_the_page_is_up_to_date() -> None:
 
 @pytest.mark.parametrize("row", [row for row in maker.HOST if row[1]], ids=lambda row: row[1])
 def test_host_names_exist(row: tuple[str, str, str, str]) -> None:
-    found: object = {"Module": Module, "Task": Task}.get(row[1].split(".")[0], ox)
-    for part in row[1].split(".") if found is ox else row[1].split(".")[1:]:
-        found = getattr(found, part)
+    look_up(row[1])
+
+
+@pytest.mark.parametrize("row", [row for row in optix_structs.STRUCTS if row[1]], ids=lambda row: row[0].split(",")[0])
+def test_struct_fields_have_their_places(row: tuple[str, str, str]) -> None:
+    """Names right behind "is" are arguments or attributes of what stands for the struct."""
+    _, here, remark = row
+    found = look_up(here)
+    known = {*inspect.signature(found).parameters, *dir(found)} if callable(found) else set(dir(found))
+    assert [argument for argument in re.findall(r"\bis `(\w+)`", remark) if argument not in known] == []
+
+
+def test_names_of_enumerations_exist() -> None:
+    for name in re.findall(r"`ox\.([\w.]+)`", optix_structs.ENUMS):
+        look_up(name)
 
 
 def test_every_device_name_is_importable() -> None:

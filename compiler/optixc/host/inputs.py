@@ -118,6 +118,9 @@ def pack_inputs(inputs: Sequence[BuildInput]) -> CInputs:
     for number, one in enumerate(inputs):
         if not isinstance(one, BuildInput):
             raise InvalidValueError(f"build input {number} is a {type(one).__name__}, not a BuildInput")
+        if type(one) is not type(inputs[0]):
+            kinds = f"input {number} is a {type(one).__name__} but input 0 a {type(inputs[0]).__name__}"
+            raise InvalidValueError(f"{kinds}; make one accel per type and instance them")
         one.fill(packed.array[number], packed.kept)
     return packed
 
@@ -147,6 +150,10 @@ def take_keys(value: Keys, shape: tuple[int | str, ...], where: str) -> list[np.
     arrays = list(value) if is_stack or isinstance(value, list | tuple) else [value]
     if not arrays:
         raise InvalidValueError(f"{where} is an empty list; motion needs one array per key")
+    if not any(isinstance(array, np.ndarray) for array in arrays):
+        given = f"a list of {type(arrays[0]).__name__}" if isinstance(value, list | tuple) else type(value).__name__
+        text = f"{where} takes a float32 array of shape ({', '.join(map(str, shape))}{',' if len(shape) == 1 else ''}), or a list of such"
+        raise InvalidValueError(f"{text} arrays, one for each motion key, not {given}; make one with numpy.array(..., numpy.float32)")
     taken = [take_array(array, np.float32, shape, where if len(arrays) == 1 else f"{where}[{key}]") for key, array in enumerate(arrays)]
     if any(array.shape != taken[0].shape for array in taken):
         raise InvalidValueError(f"the motion keys of {where} must have one shape, not {', '.join(str(array.shape) for array in taken)}")
