@@ -16,6 +16,7 @@ constexpr std::uint64_t maxPrimitives = std::uint64_t(1) << 29;
 constexpr std::uint32_t maxRecords = 1u << 24;
 constexpr std::uint32_t knownGeometryFlags = 7;
 constexpr std::uint32_t flagDisableAnyHit = 1;
+constexpr std::uint32_t manyCustomPrimitives = 256; // from here on bundled packets are traversed as one
 
 void checkRecords(const OxrtBuildInput& input, unsigned number)
 {
@@ -242,6 +243,7 @@ bool Geometry::anyHitPossible() const
 std::uint32_t Geometry::needs() const
 {
     std::uint32_t result = view.primitiveType == OXRT_PRIMITIVE_CUSTOM ? OXRT_SCENE_HAS_CUSTOM : 0;
+    if (result && view.primitiveCount >= manyCustomPrimitives) result |= OXRT_SCENE_HAS_MANY_CUSTOM;
     for (std::uint32_t i = 0; i < view.recordCount; ++i)
         if (recordFlags[i] != 0) result |= OXRT_SCENE_HAS_GEOMETRY_FLAGS;
     if (inputType == OXRT_BUILD_INPUT_SPHERES) result |= OXRT_SCENE_HAS_SPHERES;

@@ -39,7 +39,7 @@ _THREAD_LANES = frozenset({"get_launch_index", "get_launch_dimensions"})
 _PER_LANE = frozenset({"transpose", "determinant", "inverse", "mul_hi"})
 """Mathematics without a form for lanes."""
 
-PAYLOAD_GETTER, PAYLOAD_SETTER = "get_payload_", "set_payload_"
+PAYLOAD_GETTER, PAYLOAD_SETTER, ATTRIBUTE_GETTER = "get_payload_", "set_payload_", "get_attribute_"
 
 _HIT_LANES = frozenset(
     """get_world_ray_origin get_world_ray_direction get_object_ray_origin get_object_ray_direction get_ray_tmin
@@ -51,7 +51,7 @@ _HIT_LANES = frozenset(
     get_transform_list_handle get_triangle_vertex_data transform_point_from_world_to_object_space transform_point_from_object_to_world_space
     transform_vector_from_world_to_object_space transform_vector_from_object_to_world_space transform_normal_from_world_to_object_space
     transform_normal_from_object_to_world_space""".split()
-) | {f"get_attribute_{i}" for i in range(8)}
+) | {f"{ATTRIBUTE_GETTER}{i}" for i in range(8)}
 """Getters of the ray and the hit that lanes_ray.h has; the others run lane by lane."""
 
 
@@ -62,7 +62,7 @@ _HIT_OBJECT_LANES = frozenset(
     transform_point_from_world_to_object_space transform_point_from_object_to_world_space transform_vector_from_world_to_object_space
     transform_vector_from_object_to_world_space transform_normal_from_world_to_object_space
     transform_normal_from_object_to_world_space""".split()
-) | {f"get_attribute_{i}" for i in range(8)}
+) | {f"{ATTRIBUTE_GETTER}{i}" for i in range(8)}
 """Getters of the outgoing hit object that lanes_hit_object.h has, without their prefix; the others run lane by lane."""
 
 
@@ -121,8 +121,7 @@ class LaneDialect:
                 return Code(f"oxrt::checked({self._names.thread}, {self.mask}).load({array.text}, {places})")
             return Code(f"oxrt::load<LANES>({self.mask}, {array.text}, {places})")
         if self._options.checks_elements:
-            lane = f"{self._names.thread}.atLane(oxrt::anyLane({self.mask}))"
-            return Code(f"oxrt::checked({lane}).load({array.text}, {places})")
+            return Code(f"oxrt::checkedCommon({self._names.thread}, {self.mask}).load({array.text}, {places})")
         if self.is_conditional:
             return Code(f"oxrt::loadShared<LANES>({self.mask}, {array.text}, {places})")
         return Code(f"{within(array, PRIMARY)}.at({places})")
@@ -162,6 +161,8 @@ class LaneDialect:
             return Code(f"oxrt::payloadWord({self._names.trace}, {node.name.removeprefix(PAYLOAD_GETTER)})")
         if self._clone.in_intersection and node.name in COMMON_IN_INTERSECTION and not self.varies(node):
             return Code(f"{row.cpp}({', '.join([f'oxrt::commonHit({self._names.trace})', *arguments])})")
+        if self._clone.in_intersection and node.name == "get_ray_tmax":
+            return Code(f"oxrt::getRayTmax(oxrt::candidatesOf({self._names.trace}))")
         if not self.varies(node) and row.state is State.THREAD and node.name not in _THREAD_LANES:
             return Code(f"{row.cpp}({', '.join([f'*{self._names.thread}.thread', *arguments])})")
         if row.state is State.NONE and not (node.name in _PER_LANE and self.varies(node)):

@@ -15,12 +15,12 @@ from optixc.codegen.cpp_scalar import ScalarFunction
 from optixc.codegen.cpp_signatures import used_parameters
 from optixc.codegen.cpp_spmd import LaneFunction
 from optixc.codegen.cpp_spmd_clones import Clones
-from optixc.codegen.cpp_spmd_expr import PAYLOAD_GETTER, PAYLOAD_SETTER
+from optixc.codegen.cpp_spmd_expr import ATTRIBUTE_GETTER, PAYLOAD_GETTER, PAYLOAD_SETTER
 from optixc.codegen.cpp_spmd_types import WideTypes
 from optixc.codegen.cpp_types import word_count
 from optixc.codegen.helper_calls import callees_first
 from optixc.codegen.needs import EXCEPTION_FLAG_STACK_OVERFLOW, REPORT, options_of
-from optixc.codegen.program_classes import ProgramClass, callables_nest, payload_of, reachable_functions
+from optixc.codegen.program_classes import ProgramClass, callables_nest, payload_of, reachable_functions, traces_of
 from optixc.ir.intrinsic_rows import INTRINSICS
 from optixc.ir.intrinsics import State
 from optixc.ir.nodes import CallCallable, CallIntrinsic, Function, IntrinsicCall, ParameterRole, Pipeline
@@ -144,10 +144,10 @@ class SpmdFile(PipelineFile):
                 self._writer.line("static constexpr bool usesPayloadWords = true;")
             if any(_uses_payload(self._pipeline, program) for program in (*programs.anyhit, *programs.intersection)):
                 self._writer.line("static constexpr bool callbacksUsePayload = true;")
-            if programs.intersection and (programs.anyhit or any(_reads_hit(self._pipeline, p) for p in programs.intersection)):
+            if programs.intersection and any(_reads_hit(self._pipeline, p) for p in (*programs.anyhit, *programs.intersection)):
                 self._writer.line("static constexpr bool callbacksReadHit = true;")
             words = max((_reported_words(self._pipeline, program) for program in programs.intersection), default=0)
-            if words:
+            if words and _reads_attributes(self._pipeline, programs):
                 self._writer.line(f"static constexpr int attributeWords = {words};")
             for kind, _ in programs.present:
                 record = ", const OxrtRecordHeader& record" if kind is ProgramKind.INTERSECTION else ""
@@ -317,15 +317,30 @@ class SpmdFile(PipelineFile):
 
 
 def _reads_hit(pipeline: Pipeline, program: Function) -> bool:
-    """Whether an intersection program asks for more than the ray and what its lanes share."""
+    """Whether an any-hit or intersection program asks for more than the ray; intersection programs also have what their lanes share."""
+    elsewhere = _OF_RAY | (COMMON_IN_INTERSECTION if program.kind is ProgramKind.INTERSECTION else frozenset())
     asked = (e.name for f in reachable_functions(pipeline, program) for e in expressions(f.body) if isinstance(e, IntrinsicCall))
-    return any(INTRINSICS[name].state is State.RAY and name not in COMMON_IN_INTERSECTION and name not in _OF_RAY for name in asked)
+    return any(INTRINSICS[name].state is State.RAY and name not in elsewhere for name in asked)
 
 
 def _uses_payload(pipeline: Pipeline, program: Function) -> bool:
     """Whether the program reads or writes the payload."""
     names = {p.local.name for p in program.parameters if p.role is ParameterRole.PAYLOAD}
     return bool(names & used_parameters(program)) or _uses_payload_words(pipeline, program)
+
+
+def _reads_attributes(pipeline: Pipeline, programs: ProgramClass) -> bool:
+    """Whether a program of the class asks for attributes, or a hit object may keep them for one of another class."""
+    if any(trace.name != "trace" for _, trace in traces_of(pipeline)):
+        return True
+    for program in (*programs.anyhit, *programs.closesthit):
+        given = {parameter.local.name for parameter in program.parameters if parameter.role is ParameterRole.ATTRIBUTES}
+        if given & used_parameters(program):
+            return True
+        asked = (e.name for f in reachable_functions(pipeline, program) for e in expressions(f.body) if isinstance(e, IntrinsicCall))
+        if any(name.startswith(ATTRIBUTE_GETTER) for name in asked):
+            return True
+    return False
 
 
 def _reported_words(pipeline: Pipeline, program: Function) -> int:

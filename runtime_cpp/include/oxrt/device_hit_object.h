@@ -51,7 +51,7 @@ OXRT_INLINE void traverse(OxrtThread& thread, HitObject& object, uint64_t handle
 template <class Programs> OXRT_INLINE void invoke(OxrtThread& thread, HitObject& object, typename Programs::Payload& payload, Place place = Place::current()) {
     const HitObject::Kind kind = object.kind;
     object.kind = HitObject::Kind::Nop;
-    if (kind == HitObject::Kind::Nop || !enterTrace<Programs>(thread, place))
+    if (kind == HitObject::Kind::Nop || !enterTrace<Programs>(thread, SameThread{thread}, place))
         return;
     Ray ray = object.ray;
     ray.payload = &payload;

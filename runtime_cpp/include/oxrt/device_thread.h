@@ -144,15 +144,16 @@ template <class I> void faultOfItem(OxrtThread& thread, Place place, I index, in
 }
 
 /* Access with a check: an index out of range reads zero, or has `contains` say no, and is a fault. Items are those of fixed arrays,
-   vectors of both kinds and matrices; where there is none, `itemPlace` is a place that nobody looks at. */
-struct Checked {
-    OxrtThread& thread;
+   vectors of both kinds and matrices; where there is none, `itemPlace` is a place that nobody looks at. `Thread` gives the thread that
+   a fault is told of. */
+template <class Thread> struct Checked {
+    Thread thread;
     Place place;
 
     template <class B, class I> OXRT_INLINE bool containsItem(const B& base, I index) const {
         if (__builtin_expect(uint64_t(int64_t(index)) < uint64_t(itemsOf(base)), 1))
             return true;
-        faultOfItem(thread, place, index, itemsOf(base));
+        faultOfItem(thread(), place, index, itemsOf(base));
         return false;
     }
     template <class B, class I> OXRT_INLINE auto item(const B& base, I index) const {
@@ -171,14 +172,18 @@ struct Checked {
     template <class T, int RANK, class... I> OXRT_INLINE bool contains(const Array<T, RANK>& array, I... indices) const {
         if (__builtin_expect(array.contains(indices...), 1))
             return true;
-        faultOfIndex(thread, place, array, indices...);
+        faultOfIndex(thread(), place, array, indices...);
         return false;
     }
     template <class T, int RANK, class... I> OXRT_INLINE T load(const Array<T, RANK>& array, I... indices) const {
         return contains(array, indices...) ? array.at(indices...) : T{};
     }
 };
-OXRT_INLINE Checked checked(OxrtThread& thread, Place place = Place::current()) { return {thread, place}; }
+struct SameThread {
+    OxrtThread& thread;
+    OXRT_INLINE OxrtThread& operator()() const { return thread; }
+};
+OXRT_INLINE Checked<SameThread> checked(OxrtThread& thread, Place place = Place::current()) { return {{thread}, place}; }
 
 /* ---- SBT records ---------------------------------------------------------------------------------------------------------------- */
 

@@ -162,19 +162,19 @@ template <class Programs, class Flags> OXRT_INLINE void traceNow(Ray& ray, typen
             runClosestHit<Programs>(ray, payload, place);
 }
 
-/* Counts the nesting of traces; false at the limit. */
-template <class Programs> OXRT_INLINE bool enterTrace(OxrtThread& thread, Place place) {
+/* Counts the nesting of traces; false at the limit, of which `told` gets to know. */
+template <class Programs, class Told> OXRT_INLINE bool enterTrace(OxrtThread& thread, Told told, Place place) {
     if constexpr (Programs::countsDepth) {
         if (__builtin_expect(thread.traceDepth >= Programs::maxTraceDepth, 0)) {
             if constexpr (Programs::depthThrows)
-                throwException(thread, nullptr, OXRT_FAULT_TRACE_DEPTH);
+                throwException(told(), nullptr, OXRT_FAULT_TRACE_DEPTH);
             else
-                fault(thread, OXRT_FAULT_TRACE_DEPTH, "traces nest deeper than max_trace_depth", place);
+                fault(told(), OXRT_FAULT_TRACE_DEPTH, "traces nest deeper than max_trace_depth", place);
             return false;
         }
         if constexpr (Programs::checksStack)
             if (__builtin_expect(thread.traceDepth >= thread.launch->maxTraceDepth || isStackFull(thread), 0)) {
-                overflowStack<Programs::overflowThrows>(thread, place);
+                overflowStack<Programs::overflowThrows>(told(), place);
                 return false;
             }
         ++thread.traceDepth;
@@ -222,7 +222,7 @@ template <class Programs, class Flags>
 OXRT_INLINE void trace(OxrtThread& thread, uint64_t handle, const float3& origin, const float3& direction, float tmin, float tmax, float time,
                        uint32_t mask, Flags flags, uint32_t sbtOffset, uint32_t sbtStride, uint32_t missIndex,
                        typename Programs::Payload& payload, Place place = Place::current()) {
-    if (!enterTrace<Programs>(thread, place))
+    if (!enterTrace<Programs>(thread, SameThread{thread}, place))
         return;
     Ray ray;
     if (setRay<Programs>(ray, thread, handle, origin, direction, tmin, tmax, time, mask, flags, sbtOffset, sbtStride, missIndex, payload, place))

@@ -32,6 +32,19 @@ template <int W> struct CandidateLanes : RayLanes<W> {
     uint32_t commonOffset, commonStride;
 
     OXRT_INLINE explicit CandidateLanes(PacketParts<W> rays) : RayLanes<W>(rays) {}
+    static OXRT_INLINE void* operator new(__SIZE_TYPE__, void* place) { return place; }
+};
+
+/* The memory of a trace's packet, with what callbacks use of it beside. Loads wait for stores that lie a multiple of 4096 bytes apart, and frames
+   of programs that trace are larger than that; rays and candidates are smaller. */
+template <int W, bool CALLS_BACK> struct PacketMemory {
+    typename Packet<W>::RayHit rays;
+};
+template <int W> struct PacketMemory<W, true> {
+    typename Packet<W>::RayHit rays;
+    alignas(CandidateLanes<W>) unsigned char candidates[sizeof(CandidateLanes<W>)];
+    typename CandidateLanes<W>::PacketHit hits;
+    typename CandidateLanes<W>::PacketRay world;
 };
 
 /* What Embree hands to the callbacks. */
@@ -44,6 +57,9 @@ template <int W> OXRT_INLINE CandidateLanes<W>& candidatesOf(RayLanes<W>& ray) {
 template <int W> OXRT_INLINE const CandidateLanes<W>& candidatesOf(const RayLanes<W>& ray) {
     return static_cast<const CandidateLanes<W>&>(ray);
 }
+
+/* What an intersection program takes for the end of the interval. */
+template <int W> OXRT_INLINE Lanes<float, W> getRayTmax(const CandidateLanes<W>& ray) { return ray.closest; }
 
 template <int W> OXRT_INLINE Wide<float3, W> getObjectRayOrigin(const RayLanes<W>& ray) {
     const auto& r = *candidatesOf(ray).objectRay;

@@ -37,30 +37,29 @@ OXRT_INLINE Lanes<bool, W> meetingBox(const Wide<float3, W>& origin, const Wide<
     return !(enter > leave + rounding * abs(leave));
 }
 
-/* Enters what the getters over lanes read of the primitive. */
-template <int W> OXRT_INLINE void enterCommonHit(CandidateLanes<W>& ray) {
-    ray.commonInstance = ray.common.instance;
-    ray.commonGeometry = ray.common.geometry;
-    const uint32_t instance = ray.common.instance ? uint32_t(ray.common.instance - ray.root->instances) : RTC_INVALID_GEOMETRY_ID;
+/* Enters what the getters over lanes read of the primitive. Its instance and geometry come as values: read again from the scalar ray, where they
+   were stored a moment ago, they would be fetched as one pair, which waits for both stores. */
+template <int W>
+OXRT_INLINE void enterCommonHit(CandidateLanes<W>& ray, const OxrtInstanceView* instance, uint32_t instanceId, const OxrtGeometry& geometry) {
+    ray.commonInstance = instance;
+    ray.commonGeometry = &geometry;
     storeLanes<uint32_t, W>(ray.packet.hit.primID, ray.common.primitive);
     storeLanes<uint32_t, W>(ray.packet.hit.geomID, ray.embreeGeometry);
-    storeLanes<uint32_t, W>(ray.packet.hit.instID[0], instance);
+    storeLanes<uint32_t, W>(ray.packet.hit.instID[0], instanceId);
 }
 
 /* ---- callbacks ---------------------------------------------------------------------------------------------------------------- */
 
 /* Runs the program of one record. */
-template <class Programs, int W> OXRT_INLINE void runIntersection(CandidateLanes<W>& ray, Lanes<bool, W> mask, uint32_t recordIndex) {
+template <class Programs, int W>
+__attribute__((noinline)) void runIntersection(CandidateLanes<W>& ray, Lanes<bool, W> mask, uint32_t recordIndex) {
     const OxrtLaunch& launch = *ray.thread->thread->launch;
     const OxrtRecordHeader* record =
         findRecord(launch, launch.hitgroupRecords, launch.hitgroupStride, launch.hitgroupCount, recordIndex);
     if (!record)
         return;
     ray.records.common = record;
-    if constexpr (Programs::callbacksReadHit)
-        enterCommonHit(ray);
     ray.active = mask;
-    ray.t = ray.closest;
     ray.ended = false;
     Programs::intersection(ray, mask, *static_cast<typename Programs::Payload*>(ray.payload), *record);
     if constexpr (Programs::Scalar::mayThrow)
@@ -72,12 +71,15 @@ template <class Programs, int W>
 OXRT_INLINE void runIntersections(CandidateLanes<W>& ray, Lanes<bool, W> mask, uint32_t instance, uint32_t geometryId, uint32_t primitive) {
     using Scalar = typename Programs::Scalar;
     Ray& common = ray.common;
-    common.instance = instance == RTC_INVALID_GEOMETRY_ID ? nullptr : ray.root->instances + instance;
-    const OxrtTraversableView& structure = common.instance ? *common.instance->child : *ray.root;
+    const OxrtInstanceView* const ownInstance = instance == RTC_INVALID_GEOMETRY_ID ? nullptr : ray.root->instances + instance;
+    const OxrtTraversableView& structure = ownInstance ? *ownInstance->child : *ray.root;
     const OxrtGeometry& geometry = structure.geometries[geometryId];
+    common.instance = ownInstance;
     common.geometry = &geometry;
     common.primitive = primitive;
     ray.embreeGeometry = geometryId;
+    if constexpr (Programs::callbacksReadHit)
+        enterCommonHit(ray, ownInstance, instance, geometry);
     // what Embree itself found since
     const Lanes<float, W> tfar = packetLanes<W>(ray.objectRay->tfar);
     if (const Lanes<bool, W> nearer = mask & (tfar != ray.closestInEmbree); any(nearer)) {
@@ -92,7 +94,7 @@ OXRT_INLINE void runIntersections(CandidateLanes<W>& ray, Lanes<bool, W> mask, u
             return;
     }
     const uint32_t record = geometry.recordOffsets ? geometry.recordOffsets[primitive] : 0;
-    const uint32_t instanceFlags = common.instance ? common.instance->flags : 0;
+    const uint32_t instanceFlags = ownInstance ? ownInstance->flags : 0;
     if (Scalar::hasAnyHit || (ray.flags & RAY_CULL_ANY)) {
         const uint32_t flags = geometry.recordFlags[record];
         common.flags = ray.flags;
@@ -100,21 +102,12 @@ OXRT_INLINE void runIntersections(CandidateLanes<W>& ray, Lanes<bool, W> mask, u
         if ((ray.flags & RAY_CULL_ANY) && isCulled(common, instanceFlags, flags, ray.runsAnyHit))
             return;
     }
-    const uint32_t base = common.instance ? common.instance->sbtOffset : 0;
-    // one record after the other: one for all lanes, but for SBT offsets that differ between them. The program is inlined once
-    Lanes<uint32_t, W> index;
-    if (!ray.hasCommonRecord)
-        index = base + (geometry.recordBase + record) * ray.sbtStride + ray.sbtOffset;
-    uint32_t own = base + (geometry.recordBase + record) * ray.commonStride + ray.commonOffset;
-    for (Lanes<bool, W> rest = mask; any(rest);) {
-        Lanes<bool, W> equal = rest;
-        if (!ray.hasCommonRecord) {
-            own = index[firstLane(rest)];
-            equal = rest & (index == own);
-        }
-        runIntersection<Programs>(ray, equal, own);
-        rest = without(rest, equal);
-    }
+    const uint32_t base = ownInstance ? ownInstance->sbtOffset : 0;
+    const uint32_t local = geometry.recordBase + record;
+    if (ray.hasCommonRecord)
+        return runIntersection<Programs>(ray, mask, base + local * ray.commonStride + ray.commonOffset);
+    eachValue(mask, base + local * ray.sbtStride + ray.sbtOffset,
+              [&](uint32_t index, Lanes<bool, W> equal) { runIntersection<Programs>(ray, equal, index); });
 }
 
 template <class Programs, int W> void intersectCustoms(const RTCIntersectFunctionNArguments* a) {
@@ -173,22 +166,24 @@ template <class Attributes, int W> OXRT_INLINE AttributeLanes<W> attributesToLan
 /* ---- reports ------------------------------------------------------------------------------------------------------------------ */
 
 /* Makes the reported hits the closest ones of their lanes. */
-template <int W>
+template <class Programs, int W>
 OXRT_INLINE void commitReports(CandidateLanes<W>& ray, Lanes<bool, W> mask, Lanes<float, W> t, Lanes<uint32_t, W> kind,
                                const AttributeLanes<W>& attributes) {
-    for (int i = 0; i < attributes.count; ++i)
-        ray.committedAttributes[i] = select(mask, attributes.words[i], ray.committedAttributes[i]);
-    ray.committedKind = select(mask, kind, ray.committedKind);
     ray.closest = select(mask, t, ray.closest);
-    if (!ray.embreeHit) {
+    if (!ray.embreeHit) { /* of an occlusion query nothing is asked but whether there is a hit */
         stopTraversals(ray, mask);
         return;
     }
+    for (int i = 0; Programs::attributeWords > 0 && i < attributes.count; ++i)
+        ray.committedAttributes[i] = select(mask, attributes.words[i], ray.committedAttributes[i]);
+    ray.committedKind = select(mask, kind, ray.committedKind);
     auto& hit = *ray.embreeHit;
-    const uint32_t instance = ray.common.instance ? uint32_t(ray.common.instance - ray.root->instances) : RTC_INVALID_GEOMETRY_ID;
     storeLanes<uint32_t, W>(hit.primID, select(mask, ray.common.primitive, packetLanes<W>(hit.primID)));
     storeLanes<uint32_t, W>(hit.geomID, select(mask, ray.embreeGeometry, packetLanes<W>(hit.geomID)));
-    storeLanes<uint32_t, W>(hit.instID[0], select(mask, instance, packetLanes<W>(hit.instID[0])));
+    if (ray.common.instance) { /* where structures have no instances the packet says so from the beginning */
+        const uint32_t instance = uint32_t(ray.common.instance - ray.root->instances);
+        storeLanes<uint32_t, W>(hit.instID[0], select(mask, instance, packetLanes<W>(hit.instID[0])));
+    }
     ray.closestInEmbree = select(mask, nextDown(t), ray.closestInEmbree);
     auto& tfar = ray.objectRay->tfar;
     storeLanes<float, W>(tfar, select(mask, ray.closestInEmbree, packetLanes<W>(tfar)));
@@ -206,7 +201,7 @@ OXRT_INLINE Lanes<bool, W> reportIntersection(RayLanes<W>& base, Lanes<bool, W> 
     Lanes<bool, W> stopped = false;
     if constexpr (Programs::Scalar::hasAnyHit)
         if (ray.runsAnyHit) {
-            for (int i = 0; i < attributes.count; ++i)
+            for (int i = 0; Programs::attributeWords > 0 && i < attributes.count; ++i)
                 ray.attributes[i] = attributes.words[i];
             ray.kind = hitKind;
             ray.t = t;
@@ -214,17 +209,16 @@ OXRT_INLINE Lanes<bool, W> reportIntersection(RayLanes<W>& base, Lanes<bool, W> 
             ray.active = accepted;
             accepted = runAnyHits<Programs>(ray);
             ray.active = outer;
-            ray.t = ray.closest;
             stopped = ray.stopped;
         }
     if (ray.flags & RAY_TERMINATE_ON_FIRST_HIT)
         stopped |= accepted;
     if (any(accepted))
-        commitReports(ray, accepted, t, hitKind, attributes);
-    if (any(stopped))
+        commitReports<Programs>(ray, accepted, t, hitKind, attributes);
+    if (any(stopped)) {
         stopTraversals(ray, stopped);
-    ray.t = select(accepted, t, ray.t);
-    ray.ended |= stopped;
+        ray.ended |= stopped;
+    }
     return accepted;
 }
 

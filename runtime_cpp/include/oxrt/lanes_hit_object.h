@@ -125,8 +125,8 @@ OXRT_INLINE void traverse(LanesThread<W>& thread, Lanes<bool, W> mask, HitObject
                           Wide<uint32_t, W> missIndex, typename Programs::Payload& payload, Place place = Place::current()) {
     if (none(mask))
         return;
-    typename Packet<W>::RayHit packet;
-    RayLanes<W> ray(packet);
+    PacketMemoryFor<Programs, Flags, W> memory;
+    RayLanes<W> ray(memory.rays);
     if (!setRays<Programs>(ray, thread, mask, handle, origin, direction, tmin, tmax, time, visibility, flags, sbtOffset, sbtStride, missIndex,
                            payload, place))
         return;
@@ -140,7 +140,8 @@ OXRT_INLINE void traverse(LanesThread<W>& thread, Lanes<bool, W> mask, HitObject
     Lanes<bool, W> hit = false;
     const Lanes<bool, W> traced = mask & (ray.tmin <= ray.tmax);
     if (ray.root && ray.root->scene && any(traced)) {
-        hit = traverse<Programs, Flags, false>(ray, traced, payload, bundleFor<Programs, false>(ray, mask, origin, direction, tmax));
+        hit = traverse<Programs, Flags, false>(ray, traced, payload, bundleFor<Programs, false>(ray, mask, origin, direction, tmax),
+                                              memory);
         if constexpr (Programs::Scalar::mayThrow) {
             mask = without(mask, thread.thrown);
             hit = hit & mask;
@@ -165,8 +166,7 @@ OXRT_INLINE void invoke(LanesThread<W>& thread, Lanes<bool, W> mask, HitObjectLa
     makeNopHitObject(object, mask);
     if (none(hits | misses))
         return;
-    OxrtThread& one = Scalar::countsDepth ? thread.atLane(firstLane(hits | misses)) : *thread.thread;
-    if (!enterTrace<Scalar>(one, place)) {
+    if (!enterTrace<Scalar>(*thread.thread, ThreadOfAnyLane<W>{thread, hits | misses}, place)) {
         if constexpr (Scalar::depthThrows || Scalar::overflowThrows)
             takeExceptions(thread, hits | misses);
         return;

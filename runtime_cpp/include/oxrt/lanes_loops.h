@@ -149,6 +149,20 @@ template <int W> OXRT_INLINE CheckedLanes<W> checked(LanesThread<W>& thread, Lan
     return {thread, mask, place};
 }
 
+/* The same for an element that all lanes of the mask share: who is told of a fault is found out when there is one. */
+template <int W> __attribute__((noinline, cold)) OxrtThread& threadOfAnyLane(LanesThread<W>& thread, Lanes<bool, W> mask) {
+    return thread.atLane(anyLane(mask));
+}
+template <int W> struct ThreadOfAnyLane {
+    LanesThread<W>& thread;
+    Lanes<bool, W> mask;
+    OXRT_INLINE OxrtThread& operator()() const { return threadOfAnyLane(thread, mask); }
+};
+template <int W>
+OXRT_INLINE Checked<ThreadOfAnyLane<W>> checkedCommon(LanesThread<W>& thread, Lanes<bool, W> mask, Place place = Place::current()) {
+    return {{thread, mask}, place};
+}
+
 /* Lanes whose record's program takes another payload than the trace carries. */
 template <int W> OXRT_INLINE void payloadMismatch(RayLanes<W>& ray, Lanes<bool, W> mask) {
     if (__builtin_expect(any(mask), 0))

@@ -46,6 +46,15 @@ template <int W> OXRT_INLINE void clearHits(RayLanes<W>& ray) {
     setPacket(ray.packet.hit.v, Lanes<float, W>(0.0f));
 }
 
+/* No component of the active rays' directions has two signs. */
+template <int W> OXRT_INLINE bool isInOneOctant(Lanes<bool, W> mask, const Wide<float3, W>& direction) {
+    const auto hasOneSign = [mask](const Lanes<float, W>& component) {
+        const Lanes<bool, W> isNegative = mask & (component < 0.0f);
+        return none(isNegative) || none(without(mask, isNegative));
+    };
+    return hasOneSign(direction.x) && hasOneSign(direction.y) && hasOneSign(direction.z);
+}
+
 /* The masked lanes as one packet without callbacks; the lanes that hit something. */
 template <bool ANY, int W> OXRT_INLINE Lanes<bool, W> traversePacket(RayLanes<W>& ray, Lanes<bool, W> mask, bool isCoherent) {
     alignas(4 * W) int valid[W];
@@ -159,6 +168,8 @@ OXRT_INLINE void openEmptyIntervals(CandidateLanes<W>& candidates, typename Cand
     candidates.closestInEmbree = packetLanes<W>(packet.tfar);
 }
 
+template <class Programs, class Flags, int W> using PacketMemoryFor = PacketMemory<W, hasCallbacks<typename Programs::Scalar, Flags>>;
+
 /* The query of the masked lanes, whose candidates the programs judge. */
 template <class Programs, class Flags, bool ANY, int W>
 __attribute__((noinline)) void queryCandidates(CandidateLanes<W>& candidates, typename Packet<W>::RayHit& packet, Lanes<bool, W> mask) {
@@ -193,13 +204,13 @@ __attribute__((noinline)) void queryCandidates(CandidateLanes<W>& candidates, ty
 /* The masked lanes as one packet with callbacks; the lanes that hit something. Ray and payload keep their addresses to themselves: what
    callbacks see are copies, so that the rest of the program can hold its own in registers. */
 template <class Programs, class Flags, bool ANY, int W>
-OXRT_INLINE Lanes<bool, W> traverseCandidates(RayLanes<W>& ray, Lanes<bool, W> mask, typename Programs::Payload& payload, bool isCoherent) {
+OXRT_INLINE Lanes<bool, W> traverseCandidates(RayLanes<W>& ray, Lanes<bool, W> mask, typename Programs::Payload& payload, bool isCoherent,
+                                              PacketMemory<W, true>& memory) {
     using Scalar = typename Programs::Scalar;
-    typename CandidateLanes<W>::PacketRay world;
-    typename CandidateLanes<W>::PacketHit hits;
     if (ray.root->instances)
-        copyRays(world, ray.packet.ray);
-    CandidateLanes<W> candidates(PacketParts<W>(ray.root->instances ? world : ray.packet.ray, hits));
+        copyRays(memory.world, ray.packet.ray);
+    CandidateLanes<W>& candidates =
+        *new (memory.candidates) CandidateLanes<W>(PacketParts<W>(ray.root->instances ? memory.world : ray.packet.ray, memory.hits));
     typename Programs::Payload payloadCopy;
     if constexpr (Programs::callbacksUsePayload)
         payloadCopy = payload;
@@ -349,7 +360,8 @@ __attribute__((noinline)) FoundLanes<typename Programs::Payload, W> traverseApar
 }
 
 template <class Programs, class Flags, bool ANY, int W>
-OXRT_INLINE Lanes<bool, W> traverse(RayLanes<W>& ray, Lanes<bool, W> mask, typename Programs::Payload& payload, Bundle bundle) {
+OXRT_INLINE Lanes<bool, W> traverse(RayLanes<W>& ray, Lanes<bool, W> mask, typename Programs::Payload& payload, Bundle bundle,
+                                    [[maybe_unused]] PacketMemoryFor<Programs, Flags, W>& memory) {
     using Scalar = typename Programs::Scalar;
     const bool isCoherent = bundle == Bundle::Coherent;
     bool isApart = ray.paths != nullptr;
@@ -363,7 +375,7 @@ OXRT_INLINE Lanes<bool, W> traverse(RayLanes<W>& ray, Lanes<bool, W> mask, typen
                 isApart = isApart || isDivergent || (needs & OXRT_SCENE_HAS_CURVES);
             }
         if (calls && !isApart)
-            return traverseCandidates<Programs, Flags, ANY>(ray, mask, payload, isCoherent);
+            return traverseCandidates<Programs, Flags, ANY>(ray, mask, payload, isCoherent, memory);
     }
     if (!__builtin_expect(isApart, false)) {
         const bool isPacket = isCoherent || (ANY && bundle == Bundle::Near);

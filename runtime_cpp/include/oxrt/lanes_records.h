@@ -14,7 +14,7 @@ struct NoLanePrograms {
     static constexpr bool usesPayloadWords = false;
     static constexpr bool callbacksUsePayload = false; /* any-hit and intersection programs do */
     static constexpr bool callbacksReadHit = false;    /* ... in each lane: more than the ray and what an intersection's lanes share */
-    static constexpr int attributeWords = 0;           /* the most that an intersection program reports */
+    static constexpr int attributeWords = 0;           /* the most that an intersection program reports and somebody reads */
 };
 
 /* A fault of the lowest lane of the mask, if there is one. */

@@ -46,13 +46,14 @@ template <class Programs, class Flags> inline constexpr bool endsAnywhere =
 
 /* Traversal, then the closest-hit and miss programs of the lanes. */
 template <class Programs, class Flags, int W>
-OXRT_INLINE void traceNow(RayLanes<W>& ray, Lanes<bool, W> mask, typename Programs::Payload& payload, Bundle bundle, Place place) {
+OXRT_INLINE void traceNow(RayLanes<W>& ray, Lanes<bool, W> mask, typename Programs::Payload& payload, Bundle bundle,
+                          PacketMemoryFor<Programs, Flags, W>& memory, Place place) {
     using Scalar = typename Programs::Scalar;
     constexpr bool runsClosestHit = Scalar::hasClosestHit && FlagTraits<Flags>::mayRunClosestHit;
     Lanes<bool, W> hit = false;
     const Lanes<bool, W> traced = mask & (ray.tmin <= ray.tmax);
     if (ray.root && ray.root->scene && any(traced)) {
-        hit = traverse<Programs, Flags, endsAnywhere<Programs, Flags>>(ray, traced, payload, bundle);
+        hit = traverse<Programs, Flags, endsAnywhere<Programs, Flags>>(ray, traced, payload, bundle, memory);
         if constexpr (Scalar::mayThrow) {
             mask = without(mask, ray.thread->thrown);
             hit = hit & mask;
@@ -133,9 +134,12 @@ OXRT_INLINE bool setRays(RayLanes<W>& ray, LanesThread<W>& thread, Lanes<bool, W
 template <class Programs, bool ANY, int W>
 OXRT_INLINE Bundle bundleFor(const RayLanes<W>& ray, Lanes<bool, W> mask, const Wide<float3, W>& origin, const Wide<float3, W>& direction,
                              Wide<float, W> tmax) {
-    // coherent packets offer a custom primitive to lanes that miss its box, which costs more than they save
-    const bool callsIntersection = Programs::Scalar::hasIntersection && ray.root && (ray.root->needs & OXRT_SCENE_HAS_CUSTOM);
-    return callsIntersection ? Bundle::Apart : bundleOf<ANY>(mask, origin, direction, tmax);
+    const uint32_t needs = ray.root && Programs::Scalar::hasIntersection ? ray.root->needs : 0;
+    if (!(needs & OXRT_SCENE_HAS_CUSTOM))
+        return bundleOf<ANY>(mask, origin, direction, tmax);
+    // coherent packets offer a custom primitive to lanes that miss its box, which costs more than they save among few primitives: measured on
+    // clouds of spheres, 0.82 times the speed of plain packets for 10, the same for 256, 1.24 times for 100,000
+    return (needs & OXRT_SCENE_HAS_MANY_CUSTOM) && isInOneOctant(mask, direction) ? Bundle::Coherent : Bundle::Apart;
 }
 
 /* The trace of the masked lanes. The handle and the flags are the same for all of them. */
@@ -147,21 +151,20 @@ OXRT_INLINE void trace(LanesThread<W>& thread, Lanes<bool, W> mask, uint64_t han
     using Scalar = typename Programs::Scalar;
     if (none(mask))
         return;
-    OxrtThread& one = Scalar::countsDepth ? thread.atLane(firstLane(mask)) : *thread.thread;
-    if (!enterTrace<Scalar>(one, place)) {
+    if (!enterTrace<Scalar>(*thread.thread, ThreadOfAnyLane<W>{thread, mask}, place)) {
         if constexpr (Scalar::depthThrows || Scalar::overflowThrows)
             takeExceptions(thread, mask);
         return;
     }
-    typename Packet<W>::RayHit rays;
-    RayLanes<W> ray(rays);
+    PacketMemoryFor<Programs, Flags, W> memory;
+    RayLanes<W> ray(memory.rays);
     GraphPath paths[W];
     if (setRays<Programs>(ray, thread, mask, handle, origin, direction, tmin, tmax, time, visibility, flags, sbtOffset, sbtStride, missIndex,
                           payload, place)) {
         if (ray.root && __builtin_expect(isGraph(*ray.root), 0))
             ray.paths = paths;
         const Bundle bundle = bundleFor<Programs, endsAnywhere<Programs, Flags>>(ray, mask, origin, direction, tmax);
-        traceNow<Programs, Flags>(ray, mask, payload, bundle, place);
+        traceNow<Programs, Flags>(ray, mask, payload, bundle, memory, place);
     }
     leaveTrace<Scalar>(*thread.thread);
 }

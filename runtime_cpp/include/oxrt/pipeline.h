@@ -96,7 +96,7 @@ typedef struct OxrtInstanceView {
    structure at a time. */
 enum { OXRT_SCENE_HAS_CUSTOM = 1, OXRT_SCENE_HAS_MICROMAPS = 2, OXRT_SCENE_HAS_GEOMETRY_FLAGS = 4, OXRT_SCENE_HAS_INSTANCE_FLAGS = 8,
        OXRT_SCENE_HAS_MASKS = 16, OXRT_SCENE_HAS_CURVES = 32, OXRT_SCENE_HAS_SPHERES = 64, OXRT_SCENE_HAS_MOTION = 128,
-       OXRT_SCENE_MULTI_LEVEL = 256 };
+       OXRT_SCENE_MULTI_LEVEL = 256, OXRT_SCENE_HAS_MANY_CUSTOM = 512 };
 
 /* What validated launches look for in buildFlags before they answer questions by handle. */
 enum { OXRT_BUILD_ALLOWS_VERTEX_ACCESS = 16, OXRT_BUILD_ALLOWS_INSTANCE_ACCESS = 32 };

@@ -55,15 +55,15 @@ enum : int32_t { raygen_main };
 void raygen_main_lanes([[maybe_unused]] Lanes& thread, [[maybe_unused]] Mask mask) {
     const Params& params = oxrt::launchParams<Params>(thread);
 #line 25 "shader.py"
-    int32_t a = oxrt::checked(thread.atLane(oxrt::anyLane(mask))).load(params.i, 0);
+    int32_t a = oxrt::checkedCommon(thread, mask).load(params.i, 0);
 #line 25 "shader.py"
-    int32_t b = oxrt::checked(thread.atLane(oxrt::anyLane(mask))).load(params.i, 1);
-    uint32_t x = oxrt::checked(thread.atLane(oxrt::anyLane(mask))).load(params.u, 0);
+    int32_t b = oxrt::checkedCommon(thread, mask).load(params.i, 1);
+    uint32_t x = oxrt::checkedCommon(thread, mask).load(params.u, 0);
 #line 26 "shader.py"
-    uint32_t y = oxrt::checked(thread.atLane(oxrt::anyLane(mask))).load(params.u, 1);
-    float s = oxrt::checked(thread.atLane(oxrt::anyLane(mask))).load(params.f, 0);
+    uint32_t y = oxrt::checkedCommon(thread, mask).load(params.u, 1);
+    float s = oxrt::checkedCommon(thread, mask).load(params.f, 0);
 #line 27 "shader.py"
-    float t = oxrt::checked(thread.atLane(oxrt::anyLane(mask))).load(params.f, 1);
+    float t = oxrt::checkedCommon(thread, mask).load(params.f, 1);
     oxrt::checked(thread, mask).store(Wide<int32_t>(a - (b - 1) - (a + b) * -a), params.i, 2);
     oxrt::checked(thread, mask).store(Wide<int32_t>(oxrt::floorDivide(a, b) + oxrt::modulo(a, b) + oxrt::floorDivide(a,
             4) + (a << 3u) + oxrt::shiftRight(a, b)), params.i, 3);
@@ -79,9 +79,7 @@ void raygen_main_lanes([[maybe_unused]] Lanes& thread, [[maybe_unused]] Mask mas
     oxrt::checked(thread, mask).store(Wide<float>(oxrt::min(s, 1.0f) + oxrt::max(s, oxrt::max(t,
             0.25f)) + oxrt::abs(-s) + 0.1f + 1e-30f + 3.0f), params.f, 4);
 #line 37 "shader.py"
-    oxrt::checked(thread, mask).store(Wide<double>(double(s) * 0.1 + oxrt::checked(thread.atLane(oxrt::anyLane(mask))).load(params.d, 1)),
-            params.d, 0);
-#line 38 "shader.py"
+    oxrt::checked(thread, mask).store(Wide<double>(double(s) * 0.1 + oxrt::checkedCommon(thread, mask).load(params.d, 1)), params.d, 0);
     oxrt::checked(thread, mask).store(Wide<int32_t>(int32_t(params.wide >> 2u) + int32_t(params.huge % UINT64_C(1000))), params.i, 6);
     oxrt::float3 v = oxrt::float3(s, t, 1.0f);
     oxrt::float4 w = oxrt::float4(oxrt::swizzle<2, 1, 0>(v), 0.5f);
@@ -90,13 +88,13 @@ void raygen_main_lanes([[maybe_unused]] Lanes& thread, [[maybe_unused]] Mask mas
     oxrt::checked(thread, mask).store(Wide<float>(q.x + c[1].y + oxrt::dot(v, oxrt::swizzle<1, 2, 0>(v)) + w[2]), params.f, 5);
     oxrt::uint2 n = oxrt::uint2(x, y) * 2u + 1u;
     oxrt::checked(thread, mask).store(Wide<uint32_t>(n == oxrt::uint2(1u, 2u) ? n.x : n.y), params.u, 4);
-    oxrt::uint4 colour = oxrt::convert<uint32_t>(oxrt::checked(thread.atLane(oxrt::anyLane(mask))).load(params.bytes, 0, a));
+    oxrt::uint4 colour = oxrt::convert<uint32_t>(oxrt::checkedCommon(thread, mask).load(params.bytes, 0, a));
     oxrt::checked(thread, mask).store(Wide<float>(float(colour.x) / 255.0f + float(oxrt::popcount(x)) + oxrt::uintAsFloat(x)), params.f, 6);
     oxrt::float2 ratio = oxrt::float2(float(colour.y), oxrt::sqrt(s)) / 2.0f;
     oxrt::checked(thread, mask).store(Wide<float>(ratio.x * ratio.y), params.f, 7);
 }
 
-#line 100 "pipeline.cpp"
+#line 98 "pipeline.cpp"
 void run_raygen_main(OxrtThread* thread, const OxrtTile* tile) {
     oxrt::runBlocks<LANES>(*thread, *tile, [](Lanes& lanes, Mask mask) {
         raygen_main_lanes(lanes, mask);

@@ -106,7 +106,7 @@ void raygen_store_lanes([[maybe_unused]] Lanes& thread, [[maybe_unused]] Mask ma
     if (oxrt::any(mask_)) {
         oxrt::checked(thread, mask_).store(oxrt::spread<16>(photon), params.store.photons, slot);
         oxrt::eachElement<LANES>(oxrt::checked(thread, mask_).inside(params.store.photons, slot), [&,
-                value = Wide<uint32_t>(uint32_t(oxrt::checked(thread.atLane(oxrt::anyLane(mask_))).load(params.store.photons,
+                value = Wide<uint32_t>(uint32_t(oxrt::checkedCommon(thread, mask_).load(params.store.photons,
                 0).flags) + 1u)](auto& element, int lane) { oxrt::extractLane(element.flags, value, lane); }, params.store.photons, slot);
 #line 47 "shader.py"
         oxrt::eachElement<LANES>(oxrt::checked(thread, mask_).inside(params.store.photons, slot), [&,
@@ -124,9 +124,7 @@ void raygen_store_lanes([[maybe_unused]] Lanes& thread, [[maybe_unused]] Mask ma
 #line 51 "shader.py"
     oxrt::checked(thread, mask).store(Wide<uint32_t>(oxrt::convert<uint32_t>(texel.x)), params.volume, i.z, i.y, i.x);
     Photon copied = photon;
-    copied.power = oxrt::swizzle<0, 1, 2>(oxrt::convert<float>(oxrt::checked(thread.atLane(oxrt::anyLane(mask))).load(params.halves, 0,
-            0)));
-#line 54 "shader.py"
+    copied.power = oxrt::swizzle<0, 1, 2>(oxrt::convert<float>(oxrt::checkedCommon(thread, mask).load(params.halves, 0, 0)));
     oxrt::checked(thread, mask).store(oxrt::spread<16>(copied), params.store.photons, 0);
 }
 
@@ -136,7 +134,7 @@ Wide<float> next_float_lanes([[maybe_unused]] Lanes& thread, [[maybe_unused]] Ma
     return state.position.x;
 }
 
-#line 140 "pipeline.cpp"
+#line 138 "pipeline.cpp"
 // Items that a helper changes, by indices that differ and that do not; parts of storage vectors; shifts of literals.
 #line 58 "shader.py"
 void raygen_items_lanes([[maybe_unused]] Lanes& thread, [[maybe_unused]] Mask mask) {
@@ -161,7 +159,7 @@ void raygen_items_lanes([[maybe_unused]] Lanes& thread, [[maybe_unused]] Mask ma
     oxrt::checked(thread, mask).store(oxrt::loadItem<LANES>(photons, i & 1u).position.x, params.sums, i);
 }
 
-#line 165 "pipeline.cpp"
+#line 163 "pipeline.cpp"
 void run_raygen_store(OxrtThread* thread, const OxrtTile* tile) {
     oxrt::runBlocks<LANES>(*thread, *tile, [](Lanes& lanes, Mask mask) {
         raygen_store_lanes(lanes, mask);

@@ -132,8 +132,8 @@ void raygen_main_lanes([[maybe_unused]] Lanes& thread, [[maybe_unused]] Mask mas
     oxrt::checked(thread, mask).store(oxrt::select(Wide<bool>(mixed.hit), oxrt::convert<uint32_t>(Wide<uint64_t>(mixed.where) >> 32u),
             oxrt::convert<uint32_t>(Wide<uint8_t>(mixed.kind))), params.out, 0);
 #line 37 "shader.py"
-    Wide<PayloadWords_uint32_float32> payload = oxrt::spread<16>(PayloadWords_uint32_float32{oxrt::checked(thread.atLane(oxrt::anyLane(mask))).load(params.out,
-            1), 0.5f});
+    Wide<PayloadWords_uint32_float32> payload = oxrt::spread<16>(PayloadWords_uint32_float32{oxrt::checkedCommon(thread,
+            mask).load(params.out, 1), 0.5f});
 #line 37 "shader.py"
     oxrt::trace<PayloadWords_uint32_float32ProgramsLanes>(thread, mask, params.scene, oxrt::float3(0.0f), oxrt::float3(0.0f, 0.0f, 1.0f),
             0.0f, __builtin_inff(), 0.0f, 255u, oxrt::KnownFlags<0>(), 0u, 1u, 0u, payload);
