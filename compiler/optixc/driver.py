@@ -6,19 +6,17 @@ starts a process. Live functions have no such key: they are checked and emitted 
 
 from __future__ import annotations
 
-import os
 import time
 from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
-from functools import cache
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from optixc import passes, toolchain
+from optixc import passes, shader_keys, toolchain
 from optixc.cache import Cache
 from optixc.codegen.cpp_types import payload_words, word_count
 from optixc.codegen.emit import emit as emit_cpp
@@ -26,7 +24,6 @@ from optixc.codegen.payload_use import used_words
 from optixc.codegen.program_classes import constant, payload_of, trace_depth, traces_of
 from optixc.codegen.word_limits import first_excess
 from optixc.errors import (
-    FileIoError,
     InvalidAttributeAccessError,
     InvalidOperationError,
     InvalidPayloadAccessError,
@@ -45,9 +42,9 @@ from optixc.passes.callables import signatures_called
 from optixc.passes.features import Features, features
 from optixc.passes.pipeline import LinkError, link
 from optixc.passes.specialize import parameter_path
+from optixc.shader_keys import dependencies_key, file_key, places
 from optixc.signed_json import Json, digest
 from optixc.stack_usage import frames_of_programs
-from optixc.version import __version__
 
 PrintAfter = Callable[[str, nodes.Pipeline], None]
 
@@ -100,15 +97,15 @@ class Emitted:
 
 def open_file(path: Path, include_dirs: Sequence[Path], store: Cache) -> Unit:
     """The module of a shader file; the front end runs only if the cache does not know the file's text. Raises CompileError."""
-    key = _file_key(path, include_dirs)
+    key = file_key(path, include_dirs)
     note = store.read_note(key)
     if note is not None and not any(Path(one).is_file() for one in note["absent"]):
-        current = _dependencies_key(key, note["dependencies"])
+        current = dependencies_key(key, note["dependencies"])
         if current is not None and current == note["key"]:
-            places = _places(path, include_dirs)
-            return Unit(path.stem, note["programs"], current, lambda: _again(path, include_dirs, places, current))
+            then = places(path, include_dirs)
+            return Unit(path.stem, note["programs"], current, lambda: _again(path, include_dirs, then, current))
     result = compile_file(str(path), include_dirs=tuple(str(folder) for folder in include_dirs))
-    full_key = _dependencies_key(key, result.dependencies)
+    full_key = dependencies_key(key, result.dependencies)
     programs = describe_programs(result.module)
     if full_key is not None:
         found = {"dependencies": list(result.dependencies), "absent": list(result.absent)}
@@ -391,17 +388,12 @@ def _describe_bound(modules: Sequence[nodes.Module], params: t.Struct | None, op
     return described
 
 
-def _places(path: Path, include_dirs: Sequence[Path]) -> list[Path]:
-    """The file and the folders, whatever the current folder will be."""
-    return [path.absolute(), *(folder.absolute() for folder in include_dirs)]
-
-
-def _again(path: Path, include_dirs: Sequence[Path], places: list[Path], expected: str) -> FrontendResult:
-    """The front end's result for a file that only the cache had looked at; `places` are those of then."""
-    if _places(path, include_dirs) != places:
-        path, *include_dirs = places
+def _again(path: Path, include_dirs: Sequence[Path], found: list[Path], expected: str) -> FrontendResult:
+    """The front end's result for a file that only the cache had looked at; `found` are the places of then."""
+    if places(path, include_dirs) != found:
+        path, *include_dirs = found
     result = compile_file(str(path), include_dirs=tuple(str(folder) for folder in include_dirs))
-    if _dependencies_key(_file_key(path, include_dirs), result.dependencies) != expected:
+    if dependencies_key(file_key(path, include_dirs), result.dependencies) != expected:
         raise InvalidOperationError(f"{path} or a file that it imports changed since module_create; create the module again")
     return result
 
@@ -414,43 +406,4 @@ def recipe(options: CompileOptions) -> toolchain.Build:
 def _surroundings(plan: toolchain.Build) -> tuple[str, ...]:
     """What besides program, options and compiler decides the machine code."""
     machine = f"{toolchain.processor()}{toolchain.native_target()}" if plan.target == "native" else ""
-    return (_compiler_stamp(), _headers_digest(plan.include), machine)
-
-
-def _file_key(path: Path, include_dirs: Sequence[Path]) -> str:
-    """The key of a file's own text, and of where its imports are looked for."""
-    return digest("file", _compiler_stamp(), *map(str, _places(path, include_dirs)), _read(path))
-
-
-def _dependencies_key(key: str, dependencies: Sequence[str]) -> str | None:
-    """The key of a file with the helpers it imports; None if one cannot be read any more."""
-    try:
-        return digest(key, *(part for path in dependencies for part in (path, Path(path).read_bytes())))
-    except OSError:
-        return None
-
-
-@cache
-def _compiler_stamp() -> str:
-    """Changes with every change of this package's own files: version, names, sizes and times."""
-    root = os.path.dirname(__file__)
-    found = [__version__]
-    for folder in ("", "frontend", "ir", "passes", "codegen"):
-        with os.scandir(os.path.join(root, folder)) as entries:
-            for entry in sorted(entries, key=lambda entry: entry.name):
-                if entry.name.endswith(".py"):
-                    status = entry.stat()
-                    found.append(f"{folder}/{entry.name}:{status.st_size}:{status.st_mtime_ns}")
-    return digest("\n".join(found))
-
-
-@cache
-def _headers_digest(include: Path) -> str:
-    return digest(*(path.read_bytes() for path in sorted((include / "oxrt").glob("*.h"))))
-
-
-def _read(path: Path) -> bytes:
-    try:
-        return path.read_bytes()
-    except OSError as error:
-        raise FileIoError(f"{path} cannot be read: {error.strerror}") from error
+    return (shader_keys.compiler_stamp(), shader_keys.headers_digest(plan.include), machine)

@@ -16,7 +16,7 @@ from harness import SHADERS
 from shaders import bound as shader
 
 import optixc as ox
-from optixc import driver, toolchain
+from optixc import shader_keys, toolchain
 
 SHADER = SHADERS / "bound.py"
 LIGHT = shader.Light((1.0, 0.5, 0.0), False)
@@ -201,9 +201,9 @@ def test_entries_of_other_versions_are_not_found(monkeypatch: pytest.MonkeyPatch
     for change in ("version", "headers", "compiler"):
         with monkeypatch.context() as patch:
             if change == "version":
-                patch.setattr(driver, "_compiler_stamp", lambda: "another version of the compiler")
+                patch.setattr(shader_keys, "compiler_stamp", lambda: "another version of the compiler")
             elif change == "headers":
-                patch.setattr(driver, "_headers_digest", lambda include: "other headers")
+                patch.setattr(shader_keys, "headers_digest", lambda include: "other headers")
             else:
                 patch.setattr(toolchain.Compiler, "identity", property(lambda self: "another compiler"))
             value, report = run(tmp_path)
