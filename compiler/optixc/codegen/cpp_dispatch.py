@@ -56,8 +56,10 @@ class Dispatch:
             for constant, value in self._constants(programs):
                 type_ = "bool" if value == "true" else "uint32_t"
                 self._writer.line(f"static constexpr {type_} {constant} = {value};")
-            for kind, _ in programs.present:
-                self._writer.line(f"static void {FUNCTIONS[kind]}(oxrt::Ray& trace, Payload& payload, const OxrtRecordHeader& record);")
+            for kind, functions in programs.present:
+                inline = "OXRT_INLINE " if kind is ProgramKind.ANYHIT and self._signatures.inlines(functions) else ""
+                head = f"static {inline}void {FUNCTIONS[kind]}"
+                self._writer.line(f"{head}(oxrt::Ray& trace, Payload& payload, const OxrtRecordHeader& record);")
         self._writer.line()
 
     def _constants(self, programs: ProgramClass) -> list[tuple[str, str]]:
@@ -66,6 +68,7 @@ class Dispatch:
         constants = [
             ("hasClosestHit", ProgramKind.CLOSESTHIT in kinds),
             ("hasAnyHit", ProgramKind.ANYHIT in kinds),
+            ("inlinesAnyHit", ProgramKind.ANYHIT in kinds and self._signatures.inlines(dict(programs.present)[ProgramKind.ANYHIT])),
             ("hasIntersection", ProgramKind.INTERSECTION in kinds),
             ("hasMiss", ProgramKind.MISS in kinds),
             ("mayThrow", programs.may_throw or programs.depth_throws or (programs.overflow_throws and programs.counts_depth)),

@@ -6,6 +6,7 @@ parameters in the author's order.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 from optixc.codegen.cpp_types import TypeNames
@@ -123,6 +124,10 @@ class Signatures:
         result = self._types.name(function.result)
         return f"{template}{inline}{result} {self.function(function.name)}({', '.join(hidden + parameters)})"
 
+    def inlines(self, functions: Sequence[Function]) -> bool:
+        """Whether calls of all of these are inlined whatever the C++ compiler thinks."""
+        return all(function.name in self._inlined and is_inlined(function.source_name) for function in functions)
+
     def callee(self, name: str) -> str:
         """The function as a call names it, inside of a function that has its programs as a template argument."""
         return f"{self.function(name)}<Programs>" if self._needs[name].programs else self.function(name)
@@ -144,5 +149,3 @@ def used_parameters(function: Function) -> set[str]:
 def _base_name(function: Function) -> str:
     """What the C++ function is called if nothing else is called so: `closesthit_matte`, or the helper's own name."""
     return function.name.strip("_") if function.kind is not None else function.source_name
-
-

@@ -17,6 +17,7 @@ struct NoPrograms {
     using Payload = NoPayload;
     static constexpr bool hasClosestHit = false;
     static constexpr bool hasAnyHit = false;
+    static constexpr bool inlinesAnyHit = false; /* ... into the callback, wholly */
     static constexpr bool hasIntersection = false;
     static constexpr bool hasMiss = false;
     static constexpr bool mayThrow = false;
@@ -63,15 +64,19 @@ OXRT_INLINE void locate(Ray& ray, uint32_t instance, const OxrtGeometry* geometr
     ray.geometry = geometry;
     ray.primitive = primitive;
 }
-/* `geometry` is what Embree's callbacks get as the geometry's user pointer; without callback it is looked up. */
-OXRT_INLINE void enterHit(Ray& ray, const RTCHit& hit, float t, const void* geometry = nullptr) {
-    locate(ray, hit.instID[0], static_cast<const OxrtGeometry*>(geometry), hit.primID);
-    if (!geometry)
-        ray.geometry = holderOf(ray).geometries + hit.geomID;
+/* Of a candidate: `geometry` is what Embree's callbacks get as the geometry's user pointer. */
+OXRT_INLINE void enterHit(Ray& ray, const RTCHit& hit, const OxrtGeometry* geometry, float t) {
+    locate(ray, hit.instID[0], geometry, hit.primID);
     ray.t = t;
     ray.u = hit.u;
     ray.v = hit.v;
     ray.normal = {hit.Ng_x, hit.Ng_y, hit.Ng_z};
+}
+
+/* The geometry is looked up. */
+OXRT_INLINE void enterHit(Ray& ray, const RTCHit& hit, float t) {
+    enterHit(ray, hit, nullptr, t);
+    ray.geometry = holderOf(ray).geometries + hit.geomID;
 }
 
 /* The hit's SBT record, null if there is none that this pipeline may run. */
@@ -115,24 +120,51 @@ template <class Programs> OXRT_INLINE void runAnyHit(Ray& ray, const OxrtRecordH
         ray.verdict = Verdict::Terminate;
 }
 
+/* Whether all candidates of a trace with the same program run it without a further question. */
+template <class Programs, bool MAY_CULL> inline constexpr bool mayHaveSoleRecord =
+    Programs::hasAnyHit && !MAY_CULL && !Programs::usesMicromaps;
+
+/* Looks beforehand whether all candidates have one record, whose any-hit program runs. In the callbacks that is a chain of loads, one after
+   the other, in front of those of the program. */
+OXRT_INLINE void findSoleRecord(Ray& ray) {
+    const OxrtTraversableView& root = *ray.root;
+    ray.soleRecord = nullptr;
+    if (ray.path || root.geometryCount != 1 || (root.needs & OXRT_SCENE_HAS_CURVES) || root.geometries->recordOffsets)
+        return;
+    if (!anyHitEnabled(ray, 0, root.geometries->recordFlags[0]))
+        return;
+    const OxrtLaunch& launch = *ray.thread->launch;
+    ray.recordIndex = ray.sbtOffset;
+    ray.soleRecord = findRecord(launch, launch.hitgroupRecords, launch.hitgroupStride, launch.hitgroupCount, ray.recordIndex);
+}
+
+/* What becomes of a candidate for which no any-hit program runs. */
+OXRT_INLINE Verdict plainVerdict(const Ray& ray) { return ray.flags & RAY_TERMINATE_ON_FIRST_HIT ? Verdict::Terminate : Verdict::Accept; }
+
 /* Decides about the candidate that was entered into the ray; runs the any-hit program if it is to run. */
 template <class Programs, bool MAY_CULL> OXRT_INLINE Verdict judge(Ray& ray) {
-    const uint32_t instanceFlags = ray.instance ? ray.instance->flags : 0;
-    uint32_t geometryFlags = ray.geometry->recordFlags[localRecord(ray)];
-    if constexpr (Programs::usesMicromaps)
-        if (!passesMicromap(ray, instanceFlags, geometryFlags))
-            return Verdict::Ignore;
-    const bool runsAnyHit = anyHitEnabled(ray, instanceFlags, geometryFlags);
-    if constexpr (MAY_CULL)
-        if (isCulled(ray, instanceFlags, geometryFlags, runsAnyHit))
-            return Verdict::Ignore;
+    const OxrtRecordHeader* record = nullptr;
+    if constexpr (mayHaveSoleRecord<Programs, MAY_CULL>)
+        record = ray.record = ray.soleRecord;
+    if (!record) {
+        const uint32_t instanceFlags = ray.instance ? ray.instance->flags : 0;
+        uint32_t geometryFlags = ray.geometry->recordFlags[localRecord(ray)];
+        if constexpr (Programs::usesMicromaps)
+            if (!passesMicromap(ray, instanceFlags, geometryFlags))
+                return Verdict::Ignore;
+        const bool runsAnyHit = anyHitEnabled(ray, instanceFlags, geometryFlags);
+        if constexpr (MAY_CULL)
+            if (isCulled(ray, instanceFlags, geometryFlags, runsAnyHit))
+                return Verdict::Ignore;
+        if (!Programs::hasAnyHit || !runsAnyHit)
+            return plainVerdict(ray);
+        record = findHitRecord(ray);
+        if (!record)
+            return plainVerdict(ray);
+    }
     if constexpr (Programs::hasAnyHit)
-        if (runsAnyHit)
-            if (const OxrtRecordHeader* record = findHitRecord(ray)) {
-                runAnyHit<Programs>(ray, *record);
-                return ray.verdict;
-            }
-    return ray.flags & RAY_TERMINATE_ON_FIRST_HIT ? Verdict::Terminate : Verdict::Accept;
+        runAnyHit<Programs>(ray, *record);
+    return ray.verdict;
 }
 
 /* Stops the traversal; what was accepted stays. */
@@ -143,8 +175,7 @@ OXRT_INLINE void stopTraversal(Ray& ray, RTCRay& embreeRay, float t) {
 }
 
 /* Whether the candidate is a crossing of a curve that was offered before; it is noted if not. */
-OXRT_INLINE bool isRepeatedCurveHit(Ray& ray) {
-    CurveRoots& roots = ray.curveRoots;
+OXRT_INLINE bool isRepeatedCurveHit(const Ray& ray, CurveRoots& roots) {
     if (ray.t >= roots.closest)
         return true; /* of hits at one distance, as at joints of segments, the first counts */
     if (roots.geometry != ray.geometry || roots.primitive != ray.primitive || roots.instance != ray.instance)
@@ -159,23 +190,35 @@ OXRT_INLINE bool isRepeatedCurveHit(Ray& ray) {
     return false;
 }
 
-/* Embree's filter callback: called for every candidate on a built-in primitive. */
-template <class Programs, bool MAY_CULL> void filterCandidate(const RTCFilterFunctionNArguments* arguments) {
-    Ray& ray = *reinterpret_cast<Ray*>(arguments->context);
+/* Enters the candidate into `ray` and judges it; what outlasts it goes into `trace`. */
+template <class Programs, bool MAY_CULL>
+OXRT_INLINE void judgeCandidate(Ray& ray, Ray& trace, const RTCFilterFunctionNArguments* arguments) {
     RTCRay& embreeRay = *static_cast<RTCRay*>(arguments->ray);
-    if (arguments->valid[0] != -1)
-        return;
-    enterHit(ray, *static_cast<const RTCHit*>(arguments->hit), embreeRay.tfar, arguments->geometryUserPtr);
+    const RTCHit& hit = *static_cast<const RTCHit*>(arguments->hit);
+    enterHit(ray, hit, static_cast<const OxrtGeometry*>(arguments->geometryUserPtr), embreeRay.tfar);
     ray.objectRay = &embreeRay;
-    if ((ray.root->needs & OXRT_SCENE_HAS_CURVES) && isRepeatedCurveHit(ray)) {
+    if ((ray.root->needs & OXRT_SCENE_HAS_CURVES) && isRepeatedCurveHit(ray, trace.curveRoots)) {
         arguments->valid[0] = 0;
         return;
     }
     switch (judge<Programs, MAY_CULL>(ray)) {
-    case Verdict::Accept: ray.curveRoots.closest = ray.t; break;
+    case Verdict::Accept: trace.curveRoots.closest = ray.t; break;
     case Verdict::Ignore: arguments->valid[0] = 0; break;
-    case Verdict::Terminate: stopTraversal(ray, embreeRay, ray.t); break;
+    case Verdict::Terminate: stopTraversal(trace, embreeRay, ray.t); break;
     }
+}
+
+/* Embree's filter callback: called for every candidate on a built-in primitive. */
+template <class Programs, bool MAY_CULL> void filterCandidate(const RTCFilterFunctionNArguments* arguments) {
+    Ray& trace = *reinterpret_cast<Ray*>(arguments->context);
+    if (arguments->valid[0] != -1)
+        return;
+    if constexpr (Programs::inlinesAnyHit) {
+        /* nobody sees this one's address: what the programs do not read of it is never stored */
+        Ray candidate = trace;
+        judgeCandidate<Programs, MAY_CULL>(candidate, trace, arguments);
+    } else
+        judgeCandidate<Programs, MAY_CULL>(trace, trace, arguments);
 }
 
 }  // namespace OXRT_ISA

@@ -85,6 +85,8 @@ template <class Programs, class Flags, class Arguments> OXRT_INLINE void setCall
     if constexpr (mayHaveCandidates<Programs, Flags>) {
         if (mayFilter<Programs>(ray.flags, *ray.root))
             arguments.filter = filterCandidate<Programs, Known::mayCull>;
+        if constexpr (mayHaveSoleRecord<Programs, Known::mayCull>)
+            findSoleRecord(ray);
         if (filtersEverything<Programs>(ray.flags, *ray.root))
             arguments.flags = RTC_RAY_QUERY_FLAG_INVOKE_ARGUMENT_FILTER;
     }

@@ -70,6 +70,7 @@ struct Ray {
 
     /* while callbacks run */
     Verdict verdict;
+    const OxrtRecordHeader* soleRecord; /* of all candidates, or null */
     CurveRoots curveRoots;
     RTCFilterFunctionN filter; /* of the query, or null */
     bool isTerminated;

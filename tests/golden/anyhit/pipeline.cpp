@@ -34,8 +34,9 @@ enum : int32_t { raygen_lights, anyhit_glass, miss_dark };
 struct ShadowPrograms : oxrt::NoPrograms {
     using Payload = Shadow;
     static constexpr bool hasAnyHit = true;
+    static constexpr bool inlinesAnyHit = true;
     static constexpr bool hasMiss = true;
-    static void anyHit(oxrt::Ray& trace, Payload& payload, const OxrtRecordHeader& record);
+    static OXRT_INLINE void anyHit(oxrt::Ray& trace, Payload& payload, const OxrtRecordHeader& record);
     static void miss(oxrt::Ray& trace, Payload& payload, const OxrtRecordHeader& record);
 };
 
@@ -90,7 +91,7 @@ void miss_dark(Shadow& shadow) {
     shadow.light = oxrt::float3(0.0f);
 }
 
-#line 94 "pipeline.cpp"
+#line 95 "pipeline.cpp"
 void ShadowPrograms::anyHit(oxrt::Ray& trace, Payload& payload, const OxrtRecordHeader& record) {
     if (record.programs[oxrt::SLOT_ANYHIT] == number::anyhit_glass)
         anyhit_glass(trace, payload, oxrt::recordData<Glass>(record));

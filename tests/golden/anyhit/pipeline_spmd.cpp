@@ -73,8 +73,9 @@ enum : int32_t { raygen_lights, anyhit_glass, miss_dark };
 struct ShadowPrograms : oxrt::NoPrograms {
     using Payload = Shadow;
     static constexpr bool hasAnyHit = true;
+    static constexpr bool inlinesAnyHit = true;
     static constexpr bool hasMiss = true;
-    static void anyHit(oxrt::Ray& trace, Payload& payload, const OxrtRecordHeader& record);
+    static OXRT_INLINE void anyHit(oxrt::Ray& trace, Payload& payload, const OxrtRecordHeader& record);
     static void miss(oxrt::Ray& trace, Payload& payload, const OxrtRecordHeader& record);
 };
 
@@ -115,7 +116,7 @@ OXRT_INLINE void anyhit_glass(oxrt::Ray& trace, Shadow& shadow, const Glass& gla
     }
 }
 
-#line 119 "pipeline.cpp"
+#line 120 "pipeline.cpp"
 void stop_if_dark_lanes([[maybe_unused]] Rays& trace, [[maybe_unused]] Mask mask, const Wide<Shadow>& shadow);
 
 #line 36 "shader.py"
@@ -190,7 +191,7 @@ void miss_dark_lanes([[maybe_unused]] Lanes& thread, [[maybe_unused]] Mask mask,
     oxrt::assign(mask, shadow.light, oxrt::float3(0.0f));
 }
 
-#line 194 "pipeline.cpp"
+#line 195 "pipeline.cpp"
 void ShadowPrograms::anyHit(oxrt::Ray& trace, Payload& payload, const OxrtRecordHeader& record) {
     if (record.programs[oxrt::SLOT_ANYHIT] == number::anyhit_glass)
         anyhit_glass(trace, payload, oxrt::recordData<Glass>(record));
