@@ -19,6 +19,23 @@ def __raygen__a():
     n = weather  # E[OX301]: nothing defines it
 
 
+def make_floats():
+    return 1.0
+
+
+@ox.program
+def __raygen__b():
+    a = make_float3(1.0, 2.0, 3.0)  # E[OX301]: did you mean `ox.float3`?
+    b = OPTIX_RAY_FLAG_DISABLE_ANYHIT  # E[OX301]: did you mean `ox.RayFlags.DISABLE_ANYHIT`?
+    c = ox.OPTIX_PRIMITIVE_TYPE_SPHERE  # E[OX301]: did you mean `ox.PrimitiveType.SPHERE`?
+    d = OPTIX_HIT_KIND_TRIANGLE_FRONT_FACE  # E[OX301]: did you mean `ox.HitKind.TRIANGLE_FRONT_FACE`?
+    e = OPTIX_EXCEPTION_CODE_STACK_OVERFLOW  # E[OX301]: did you mean `ox.ExceptionCodes.STACK_OVERFLOW`?
+    f = OptixVisibilityMask(255)  # E[OX301]: a visibility mask is a plain number of 8 bits
+    g = OPTIX_WEATHER_SUNNY  # E[OX301]: nothing defines it
+    h = make_float()  # E[OX301]: did you mean `make_floats`?
+    p, q = ox.trace(ox.Traversable(0), ox.float3(0.0), ox.float3(1.0), 0.0, 1.0, 0.0, 255, 0, 0, 1, 0, 1, 2)  # E[OX305]: payload=(p0, p1)
+
+
 @ox.program
 def __exception__a():
     a = ox.get_exception_line_info()  # E[OX301]: the error of a failed launch tells program, path and line

@@ -23,7 +23,7 @@ from optixc.frontend.checked import (
 )
 from optixc.frontend.context import Context, describe
 from optixc.frontend.environment import Bound, Conflict, Partial
-from optixc.frontend.near_names import suggestion
+from optixc.frontend.near_names import other_spelling, suggestion
 from optixc.frontend.places import is_payload_parameter
 from optixc.frontend.refusals import refuse_expression
 from optixc.frontend.resolve_static import local_names, static_symbol
@@ -117,7 +117,8 @@ def _check_name(c: Context, node: ast.Name) -> ExprInfo:
     symbol = static_symbol(c, node)
     if symbol is None:
         near = difflib.get_close_matches(node.id, [*local_names(c), *c.scope.definitions], 1)
-        note = f"did you mean `{near[0]}`?" if near else suggestion(node.id) or "nothing defines it"
+        meant = f"did you mean `{near[0]}`?" if near else suggestion(node.id)
+        note = other_spelling(node.id) or meant or "nothing defines it"
         return c.error("OX301", node, f"`{node.id}` is not defined", note)
     return symbol_value(c, node, symbol)
 

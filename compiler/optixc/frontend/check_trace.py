@@ -25,6 +25,10 @@ def check_trace(c: Context, node: ast.Call, name: str) -> ExprInfo:
     row = INTRINSICS[name]
     names = [parameter.name for parameter in row.parameters]
     optional = [parameter.name for parameter in row.parameters if parameter.default is not None]
+    if len(node.args) > len(names) + 1:
+        note = "payload words go into one argument: `payload=(p0, p1)`, and the call gives them back"
+        c.error("OX305", node.args[len(names) + 1], f"{name}() takes {len(names) + 1} arguments, here are {len(node.args)}", note)
+        return ExprInfo(INVALID)
     bound = bind_arguments(c, node, name, [*names, "payload"], [*optional, "payload"])
     check_written(c, node)
     require_row(c, row, name, node)
