@@ -107,7 +107,7 @@ def _check_name(c: Context, node: ast.Name) -> ExprInfo:
     binding = c.environment.get(node.id)
     match binding:
         case Bound(local=local):
-            return ExprInfo(local.type, use=LocalUse(local))
+            return ExprInfo(INVALID) if isinstance(local.type, t.Void) else ExprInfo(local.type, use=LocalUse(local))
         case Partial(reason=reason):
             return c.error("OX306", node, f"`{node.id}` may have no value here: {reason}", "bind it on every way, e.g. before the branch")
         case Conflict(reason=reason):

@@ -9,12 +9,13 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 from optixc.ir.nodes import Local
+from optixc.ir.types import Void
 from optixc.source import Span
 
 
 @dataclass(frozen=True)
 class Bound:
-    """The name means `local`; `span` is where it was bound last."""
+    """The name means `local`; `span` is where it was bound last. A local of type void stands for a value that had an error."""
 
     local: Local
     span: Span
@@ -94,6 +95,9 @@ def join(base: Environment, ways: Sequence[Way]) -> None:
 
 
 def _joined(name: str, bindings: list[tuple[Way, Binding | None]]) -> Binding:
+    for _, binding in bindings:
+        if isinstance(binding, Bound) and isinstance(binding.local.type, Void):
+            return binding
     first: tuple[Way, Bound] | None = None
     missing: Way | None = None
     for way, binding in bindings:
