@@ -161,3 +161,32 @@ def test_motion_transforms_are_missed_without_motion_in_the_pipeline(harness: Ha
     scene = [gas(triangles(CORNER)), transform("matrixMotion", [IDENTITY, IDENTITY]), ias(instance("moving"))]
     (result,) = trace(harness, scene, [ray((0.25, 0.25, 1.0), root="ias")])
     assert missed(result)
+
+
+@pytest.mark.parametrize("uses_motion_blur", [False, True])
+def test_a_pipeline_without_motion_says_so(uses_motion_blur: bool) -> None:
+    """Once, at the first launch: the missing object is otherwise hard to explain."""
+
+    @ox.struct
+    class Params:
+        scene: ox.Traversable
+
+    params = ox.launch_params(Params)
+
+    @ox.program
+    def __raygen__looks() -> None:
+        ox.trace(params.scene, ox.float3(0.25, 0.25, 1.0), ox.float3(0.0, 0.0, -1.0))
+
+    told: list[str] = []
+    context = ox.DeviceContext(log_callback=lambda level, tag, text: told.append(text) if level == 3 else None)
+    group = context.program_group_create(raygen=context.module_create([__raygen__looks])["__raygen__looks"])
+    options = ox.PipelineCompileOptions(uses_motion_blur=uses_motion_blur)
+    pipeline = context.pipeline_create([group], options=options, simd=1)
+    triangle = context.accel_build([ox.BuildInputTriangles(np.array(CORNER, np.float32))])
+    moving = context.matrix_motion_transform(triangle, np.tile(np.eye(3, 4), (2, 1, 1)), ox.MotionOptions(2))
+    above = context.static_transform(context.accel_build([ox.BuildInputInstances([moving] * 2)]), np.eye(3, 4))
+    for scene in (triangle, above, above):
+        table = ox.ShaderBindingTable(group.record(), miss=[context.program_group_create(miss=None).record()])
+        pipeline.launch(Params(scene), table, 1)
+    assert len(told) == (0 if uses_motion_blur else 1)
+    assert uses_motion_blur or "`scene` of the launch parameters holds motion transforms" in told[0]

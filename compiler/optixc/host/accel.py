@@ -33,6 +33,12 @@ class TraversableHandle(int):
         return int, (int(self),)
 
 
+def moves_by_transform(traversable: Any) -> bool:
+    """Whether motion transforms lie in the graph below a traversable, as far as Python knows it: plain numbers tell nothing."""
+    known = traversable.accel if isinstance(traversable, TraversableHandle) else traversable
+    return bool(getattr(known, "moves_by_transform", False))
+
+
 class Accel(Owned):
     """A GAS or IAS. It lives as long as something refers to it (this object, a handle, a parent), or until `destroy()`."""
 
@@ -54,6 +60,7 @@ class Accel(Owned):
         library.check(library.lib().oxrtAccelBuild(context.handle, options, packed.array, packed.count, made))
         self._accel = made[0]
         self._children = tuple(child for one in self._inputs for child in one.children())
+        self._moves: bool | None = None
         self.parts = parts_of(self._inputs)
         self._inputs = ()
         self._handle = int(self._info().handle)
@@ -84,6 +91,14 @@ class Accel(Owned):
         return bool(self._info().hasNativeInstances)
 
     @property
+    def moves_by_transform(self) -> bool:
+        """Whether motion transforms lie below this structure; looked for once, since there may be a million instances."""
+        if self._moves is None:
+            different = {id(child): child for child in self._children}.values()
+            self._moves = any(moves_by_transform(child) for child in different)
+        return self._moves
+
+    @property
     def is_native(self) -> bool:
         """Whether Embree walks through this structure without the kernels: geometry, or an IAS with `has_native_instances`."""
         info = self._info() if self._accel is not None and self._context.is_alive else None
@@ -112,6 +127,7 @@ class Accel(Owned):
         packed = pack_inputs(inputs)
         library.check(library.lib().oxrtAccelUpdate(self._live(), packed.array, packed.count))
         self._children = tuple(child for one in inputs for child in one.children())
+        self._moves = None
         self.parts = parts_of(inputs)
         return self
 
@@ -142,6 +158,7 @@ class Accel(Owned):
         made: Accel = object.__new__(Accel)
         made._accel, made._context, made._build_flags, made._motion = accel, self._context, self._build_flags, self._motion
         made._inputs, made._children, made.parts = (), children, parts
+        made._moves = None
         made._handle = int(made._info().handle)
         return made
 

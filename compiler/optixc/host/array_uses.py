@@ -7,7 +7,7 @@ that found all their arrays there, until a field is set.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from typing import Any
 
 from optixc.errors import InvalidValueError
@@ -20,9 +20,13 @@ _Use = tuple[tuple[str, ...], str, str | None]
 
 
 class ArrayUses:
-    """What the compiler says about a pipeline: rows of a path (`params`, `record PROGRAM` or `struct NAME`, then fields) and places."""
+    """What the compiler says about a pipeline: rows of a path (`params`, `record PROGRAM` or `struct NAME`, then fields) and places.
 
-    def __init__(self, rows: Iterable[Mapping[str, Any]]) -> None:
+    `also` is what else is asked of launch parameters that have changed.
+    """
+
+    def __init__(self, rows: Iterable[Mapping[str, Any]], also: Callable[[Any], None] | None = None) -> None:
+        self._also = also
         self._of_params: list[_Use] = []
         self._of_records: dict[str, list[_Use]] = {}
         for row in rows:
@@ -38,6 +42,8 @@ class ArrayUses:
         values = params.__dict__
         if values["_complete_for"] is not self:
             _check_params(params, self._of_params)
+            if self._also is not None:
+                self._also(params)
             values["_complete_for"] = self
             return
         for name, structs in self._written_fields:

@@ -14,8 +14,8 @@ from optixc.enums_program import ExceptionFlags
 from optixc.errors import InvalidDeviceContextError, InvalidOperationError, InvalidValueError, ValidationFailureError, from_code
 from optixc.host import bound_values, in_flight, library, structs
 from optixc.host.array_uses import ArrayUses
-from optixc.host.context import Context
-from optixc.host.graph_report import graph_forms
+from optixc.host.context import LOG_WARNING, Context
+from optixc.host.graph_report import graph_forms, moving_fields
 from optixc.host.groups import ProgramGroup, Record, check_layout
 from optixc.host.owned import Owned
 from optixc.host.sbt import ShaderBindingTable
@@ -103,6 +103,7 @@ class Pipeline(Owned):
         self._params = params
         self.programs = {one["name"]: one for one in programs}
         self._params_type: type | None = None
+        self._is_motion_told = False
         self._last_params: weakref.ref[Any] | None = None
         self._lock = threading.Lock()
         self._lib = library.lib()
@@ -121,7 +122,7 @@ class Pipeline(Owned):
             lanes=int(info.lanes), params_size=int(info.paramsSize), max_trace_depth=int(info.maxTraceDepth), library=path, **report
         )
         self._provide_stack(int(info.stackSize))
-        self._arrays = ArrayUses(self._report.arrays)
+        self._arrays = ArrayUses(self._report.arrays, None if uses_motion else self._warn_of_motion)
         for group in self._groups:
             group.linked_into(self)
 
@@ -154,6 +155,15 @@ class Pipeline(Owned):
             self._arrays.check_params(params)
         if type(sbt) is not ShaderBindingTable:
             raise InvalidValueError(f"sbt takes a ShaderBindingTable, not {type(sbt).__name__}")
+
+    def _warn_of_motion(self, params: Any) -> None:
+        """Rays of a pipeline without motion miss what transforms move, as OptiX's do: too quiet an end for a forgotten option."""
+        moving = moving_fields(params) if not self._is_motion_told else ()
+        if moving:
+            self._is_motion_told = True
+            text = f"`{moving[0]}` of the launch parameters holds motion transforms; rays of a pipeline without motion miss what is below"
+            remedy = "give pipeline_create options=ox.PipelineCompileOptions(uses_motion_blur=True)"
+            self._context.log(LOG_WARNING, "LAUNCH", f"{text}; {remedy}")
 
     def _pack(self, params: Any, sbt: ShaderBindingTable) -> tuple[Any, int, Any]:
         table = sbt.c_table(self)

@@ -10,7 +10,7 @@ import numpy as np
 
 from optixc.errors import InvalidValueError
 from optixc.host import library
-from optixc.host.accel import TraversableHandle
+from optixc.host.accel import TraversableHandle, moves_by_transform
 from optixc.host.context import Context
 from optixc.host.inputs import MotionOptions, take_handle, take_transform
 from optixc.host.owned import Owned
@@ -25,6 +25,7 @@ class Transform(Owned):
         self._transform: Any = None
         self._context = context
         self._child = child
+        self._kind = kind
         ffi, lib = library.ffi(), library.lib()
         options = ffi.new("OxrtTransformOptions*")
         options.type = getattr(lib, f"OXRT_TRANSFORM_{kind}")
@@ -43,6 +44,11 @@ class Transform(Owned):
     def handle(self) -> TraversableHandle:
         """The 64-bit handle; stale after `destroy()`."""
         return TraversableHandle(self._handle, self)
+
+    @property
+    def moves_by_transform(self) -> bool:
+        """Whether this is a motion transform or one lies below."""
+        return self._kind != "STATIC" or moves_by_transform(self._child)
 
     def destroy(self) -> None:
         """Makes the handle stale; memory goes when no parent and no launch uses it. Nothing happens the second time."""
