@@ -1,10 +1,11 @@
 // Ribbons: a line of half-width r(u) swept along a quadratic B-spline, met from both sides. The direction across is blended between unit
-// vectors at the borders of segments: across the tangent and the caller's normal, or where there are no normals across the plane in which
-// the curve bends. The point of the axis in front of the ray along that direction is a root of a polynomial in u, of degree 5 at most.
+// vectors at the borders of segments: across the tangent and the caller's normal, or where there are no normals as the strand turns. The
+// point of the axis in front of the ray along that direction is a root of a polynomial in u, of degree 5 at most.
 #include "curve_points.h"
 
 #include "embree_library.h"
 #include "polynomial.h"
+#include "ribbon_turn.h"
 
 #include <cmath>
 #include <cstdint>
@@ -31,23 +32,6 @@ void storePoint(float* xyz, const Point4& p)
 Point4 rejected(const Point4& a, const Point4& direction)
 {
     return a - direction * dot3(a, direction);
-}
-
-// A direction across `tangent` where nothing else says one.
-Point4 anyAcross(const Point4& tangent)
-{
-    const Point4 across = cross3(tangent, {0, 0, 1, 0});
-    return normalize3(dot3(across, across) > 1e-12f * dot3(tangent, tangent) ? across : cross3(tangent, {1, 0, 0, 0}));
-}
-
-// Across the plane in which three control points lie; zero if they lie on a line.
-Point4 acrossBend(const Point4* p)
-{
-    const Point4 a = p[1] - p[0];
-    const Point4 b = p[2] - p[1];
-    const Point4 across = cross3(b, a);
-    constexpr float straight = 1e-5f;
-    return dot3(across, across) > straight * straight * dot3(a, a) * dot3(b, b) ? normalize3(across) : Point4{};
 }
 
 // The direction across along one segment. Each border adds to its own direction a part of the way along the axis, so that the surface
@@ -169,15 +153,29 @@ public:
 private:
     void computeWidths(const OxrtBuildInput& input)
     {
-        for (std::uint32_t key = 0; key < curves.keyCount; ++key)
-            for (std::uint32_t i = 0; i < curves.segmentCount; ++i)
-                for (std::uint32_t end = 0; end < 2; ++end) {
-                    const Point4 across = input.normals ? acrossNormal(input.normals[key], key, i, end) : acrossCurve(key, i, end);
-                    storePoint(widthOf(key, i) + 3 * end, across);
-                }
         for (std::uint32_t key = 0; key < curves.keyCount; ++key) {
+            if (input.normals)
+                alongNormals(input.normals[key], key);
+            else
+                alongStrands(key);
             alignSides(key);
             leanAcross(key);
+        }
+    }
+
+    void alongNormals(const float* normals, std::uint32_t key)
+    {
+        for (std::uint32_t i = 0; i < curves.segmentCount; ++i)
+            for (std::uint32_t end = 0; end < 2; ++end) storePoint(widthOf(key, i) + 3 * end, acrossNormal(normals, key, i, end));
+    }
+
+    void alongStrands(std::uint32_t key)
+    {
+        for (std::uint32_t first = 0, behind = 0; first < curves.segmentCount; first = behind) {
+            for (behind = first + 1; behind < curves.segmentCount && curves.continues(behind);) ++behind;
+            const std::vector<Point4> across = acrossStrand(pointsOf(key, first), behind - first);
+            for (std::uint32_t i = first; i < behind; ++i)
+                for (std::uint32_t end = 0; end < 2; ++end) storePoint(widthOf(key, i) + 3 * end, across[i - first + end]);
         }
     }
 
@@ -197,19 +195,6 @@ private:
         const Point4 tangent = p[1] - p[0];
         const Point4 across = normalize3(cross3(pointOf(normals + 3 * (curves.firsts[segment] + end)), tangent));
         return dot3(across, across) > 0 ? across : anyAcross(tangent);
-    }
-
-    // The mean of the bends on both sides of the border.
-    Point4 acrossCurve(std::uint32_t key, std::uint32_t segment, std::uint32_t end) const
-    {
-        const Point4* own = pointsOf(key, segment);
-        Point4 mean = acrossBend(own);
-        const bool hasNeighbour = end == 0 ? curves.continues(segment) : segment + 1 < curves.segmentCount && curves.continues(segment + 1);
-        if (hasNeighbour) {
-            const Point4 other = acrossBend(end == 0 ? own - 1 : own + 1);
-            mean = dot3(mean, other) < 0 ? mean - other : mean + other;
-        }
-        return dot3(mean, mean) > 0 ? normalize3(mean) : anyAcross(own[end + 1] - own[end]);
     }
 
     // The sides must not swap along a strand; a border at right angles to the one before it counts as swapped, as OptiX has it.

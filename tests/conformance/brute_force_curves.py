@@ -47,7 +47,6 @@ class Segment:
     points: Floats
     origin: Floats
     direction: Floats
-    has_normals: bool = False
 
     def at(self, u: float) -> Floats:
         """Axis and radius."""
@@ -99,7 +98,7 @@ def segments(scene: list[dict[str, Any]], given: dict[str, Any], primitive: int)
             first = int(item["indices"][index])
             points = item["vertices"].reshape(-1, 3)[first : first + basis.shape[1]]
             radii = item["radii"][first : first + basis.shape[1]]
-            found.append(Segment(kind, basis @ np.column_stack([points, radii]), points, ray.origin, ray.direction, "normals" in item))
+            found.append(Segment(kind, basis @ np.column_stack([points, radii]), points, ray.origin, ray.direction))
     return found
 
 

@@ -15,7 +15,6 @@ TOO_THICK = "strands thicker than their bends"
 GRAZING = "grazing rays"
 ROCAPS_CAP = "flat ends of rocaps"
 CONE_END = "parameter at the end of a cone"
-ORIENTATION = "orientation of ribbons without normals"
 SECOND_CROSSING = "second crossing of a segment"
 INTERNAL = "surfaces inside of linear strands"
 ROCAPS_ACCURACY = "accuracy of rocaps"
@@ -30,7 +29,6 @@ REASONS = {
     GRAZING: "the ray touches a sphere within rounding",
     ROCAPS_CAP: "the recorded flat ends of rocaps lie off the plane through the end of the axis; here they lie in it",
     CONE_END: "near the wide end of a cone the recorded parameter is 1 before the end is reached",
-    ORIENTATION: "how ribbons without normals are turned along bent strands is not documented; here they lie across the bends",
     INTERNAL: "segments of linear strands are met from inside of their neighbours there (notes of group 11); here joints are one surface",
     ROCAPS_ACCURACY: "the recorded hits lie off the swept spheres by up to 5e-4, which bent and grazed strands turn into "
     "more along the ray",
@@ -93,7 +91,7 @@ def _same_primitives(ours: list[dict[str, Any]], theirs: list[dict[str, Any]]) -
 def _of_hit(event: dict[str, Any], segment: Segment) -> str | None:
     u = float(event["u"])
     if segment.curve_type == RIBBON:
-        return None if segment.is_straight() or segment.has_normals else ORIENTATION
+        return None
     if segment.curve_type == LINEAR:
         return PARALLEL if segment.is_parallel() else GRAZING if brute_force_curves.grazes(segment) else None
     if segment.is_parallel():

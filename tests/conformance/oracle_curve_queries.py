@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 from harness import Harness
-from oracle_curve_differences import ORIENTATION, REASONS
+from oracle_compare import RIBBON_NORMAL as NORMAL_TOLERANCE
 from oracle_files import Probe, numbers
 from shaders import curve_access as shader
 
@@ -20,8 +20,6 @@ import optixc as ox
 POINT_FLOATS, CUBIC_POINTS = 4, 4
 RIBBON_KEYS = {"prim", "u", "v", "verts", "normal"}
 Turn = Callable[[int], np.ndarray | None]
-# A recorded normal holds a finite difference: its part that grows with v is off by 1e-4 of itself.
-NORMAL_TOLERANCE = 2e-4
 
 
 def is_curve_query(probe: Probe) -> bool:
@@ -39,19 +37,7 @@ def check_curve_queries(harness: Harness, probe: Probe) -> None:
         _answers(harness, asked, None)
         return
     worst = {name: _answers(harness, asked, turn) for name, turn in TURNS.items()}
-    if min(worst.values()) >= NORMAL_TOLERANCE:
-        # a ribbon that was built without normals: how it is turned is not documented, but it lies across its axis at the borders
-        assert all(_is_across(query) for query in asked if query["v"] == 0 and query["u"] in (0, 1)), f"largest error of a normal: {worst}"
-        print(f"{probe.id}: differs: {ORIENTATION} ({REASONS[ORIENTATION]})")
-
-
-def _is_across(query: dict[str, Any]) -> bool:
-    """Whether a recorded normal at a border, on the axis, stands upright on the tangent and is as long as it."""
-    points = np.reshape(numbers(query["verts"]), (-1, POINT_FLOATS))[:, :3]
-    tangent, normal = points[int(query["u"]) + 1] - points[int(query["u"])], np.array(numbers(query["normal"]))
-    length = float(np.linalg.norm(tangent))
-    lean, stretch = float(normal @ tangent) / length**2, float(np.linalg.norm(normal)) / length
-    return abs(lean) < NORMAL_TOLERANCE and abs(stretch - 1.0) < NORMAL_TOLERANCE
+    assert min(worst.values()) < NORMAL_TOLERANCE, f"largest error of a normal: {worst}"
 
 
 def _answers(harness: Harness, asked: list[dict[str, Any]], turn: Turn | None) -> float:

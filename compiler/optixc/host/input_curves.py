@@ -73,7 +73,7 @@ class BuildInputSpheres(Records, BuildInput):
 class BuildInputCurves(BuildInput):
     """Curves of one basis: float32 vertices (n, 3), radii (n,) or a number, and for each segment the index of its first control point.
 
-    `normals` (n, 3) orient ribbons; without them a ribbon lies across the bends of its curve. Linear curves have spherical ends always;
+    `normals` (n, 3) orient ribbons; without them a ribbon lies across the bends of its strand. Linear curves have spherical ends always;
     `endcap_flags` ON closes the others by discs at both ends of every strand. Curves have one SBT record and one flag word.
     """
 
