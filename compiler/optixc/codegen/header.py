@@ -1,7 +1,8 @@
 """The C header of a compiled pipeline for its users: structs of launch parameters and SBT records, names of programs.
 
 Every member has the type or layout that the shader sees, so that a C or C++ program fills the structs and passes their bytes. Vectors
-and matrices are arrays of their scalar; arrays are a pointer and a shape.
+and matrices are arrays of their scalar; arrays are a pointer and a shape. In C++ the structs are in a namespace of the pipeline, which is
+open: one source file may include the headers of several pipelines, each with its `Params`.
 """
 
 from __future__ import annotations
@@ -33,7 +34,8 @@ from optixc.ir.types import (
 
 def emit_header(pipeline: Pipeline, name: str = "shaders") -> str:
     """The text of the header; `name` is the file's, for its guard and the prefix of its constants."""
-    prefix = identifier(re.sub(r"\W", "_", name)).upper()
+    plain = identifier(re.sub(r"\W", "_", name))
+    prefix = plain.upper()
     lines = [
         f"/* Structs and program names of the pipeline {name}, made by optixc. */",
         f"#ifndef {prefix}_H",
@@ -45,8 +47,12 @@ def emit_header(pipeline: Pipeline, name: str = "shaders") -> str:
     ]
     structs = _structs(pipeline)
     names = _struct_names(structs)
+    if structs:
+        lines += ["#ifdef __cplusplus", f"namespace optixc {{ namespace {plain} {{", "#endif", ""]
     for struct in structs:
         lines += _definition(struct, names)
+    if structs:
+        lines += ["#ifdef __cplusplus", "} }", f"using namespace optixc::{plain};", "#endif", ""]
     if pipeline.params is not None:
         lines += [f"enum {{ {prefix}_PARAMS_SIZE = {size_of(pipeline.params)} }};", ""]
     scope = Scope()

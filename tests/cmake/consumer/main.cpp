@@ -1,6 +1,7 @@
 // Launches the pipeline that the build compiled and prints what it wrote.
 #include <oxrt/oxrt.h>
 
+#include "cubes.h"
 #include "squares.h"
 
 #include <cstdio>
@@ -35,8 +36,9 @@ int main()
     table.raygenRecord = record;
 
     int32_t values[5] = {};
-    Params params{};
-    static_assert(sizeof(Params) == SQUARES_PARAMS_SIZE);
+    optixc::squares::Params params{};
+    static_assert(sizeof(optixc::squares::Params) == SQUARES_PARAMS_SIZE);
+    static_assert(sizeof(optixc::cubes::Params) == CUBES_PARAMS_SIZE);
     params.values.data = values;
     params.values.shape[0] = 5;
     check(oxrtLaunch(pipeline, &params, sizeof params, &table, 5, 1, 1));
