@@ -210,6 +210,7 @@ void Accel::describe()
     view.type = instances ? OXRT_TRAVERSABLE_IAS : OXRT_TRAVERSABLE_GAS;
     view.geometries = geometryViews.data();
     view.geometryCount = static_cast<std::uint32_t>(geometries.size());
+    if (geometries.size() == 1) geometryViews[0].isLone = geometryViews[0].primitiveCount == 1 && geometryViews[0].keyCount == 1;
     view.keyCount = motion.numKeys;
     view.motionFlags = motion.flags;
     view.timeBegin = motion.timeBegin;

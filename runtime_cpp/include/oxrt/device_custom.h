@@ -42,9 +42,7 @@ template <class Programs> OXRT_INLINE void runIntersection(Ray& ray, RTCRay& emb
     ray.objectRay = &embreeRay;
     if (embreeRay.tfar != ray.closestInEmbree)
         ray.closest = ray.closestInEmbree = embreeRay.tfar;
-    const OxrtTraversableView& structure = holderOf(ray);
-    if (structure.geometryCount == 1 && ray.geometry->primitiveCount == 1 && ray.geometry->keyCount == 1 &&
-        !meetsBox(embreeRay, ray.geometry->vertices, ray.tmin, ray.closest))
+    if (ray.geometry->isLone && !meetsBox(embreeRay, ray.geometry->vertices, ray.tmin, ray.closest))
         return;
     if (Programs::hasAnyHit || (ray.flags & RAY_CULL_ANY)) {
         const uint32_t instanceFlags = ray.instance ? ray.instance->flags : 0;

@@ -67,17 +67,19 @@ __attribute__((noinline)) void runIntersection(CandidateLanes<W>& ray, Lanes<boo
 }
 
 /* One custom primitive, for the lanes to which Embree offers it. */
-template <class Programs, int W>
-OXRT_INLINE void runIntersections(CandidateLanes<W>& ray, Lanes<bool, W> mask, uint32_t instance, uint32_t geometryId, uint32_t primitive) {
+template <class Programs, int W, class Arguments> OXRT_INLINE void runIntersections(CandidateLanes<W>& ray, const Arguments& offer) {
     using Scalar = typename Programs::Scalar;
-    Ray& common = ray.common;
+    Lanes<bool, W> mask = without(loadValid<W>(offer.valid), ray.isTerminated);
+    if (none(mask))
+        return;
+    const uint32_t instance = offer.context->instID[0], primitive = offer.primID;
     const OxrtInstanceView* const ownInstance = instance == RTC_INVALID_GEOMETRY_ID ? nullptr : ray.root->instances + instance;
-    const OxrtTraversableView& structure = ownInstance ? *ownInstance->child : *ray.root;
-    const OxrtGeometry& geometry = structure.geometries[geometryId];
+    const auto& geometry = *static_cast<const OxrtGeometry*>(offer.geometryUserPtr);
+    Ray& common = ray.common;
     common.instance = ownInstance;
     common.geometry = &geometry;
     common.primitive = primitive;
-    ray.embreeGeometry = geometryId;
+    ray.embreeGeometry = offer.geomID;
     if constexpr (Programs::callbacksReadHit)
         enterCommonHit(ray, ownInstance, instance, geometry);
     // what Embree itself found since
@@ -86,10 +88,9 @@ OXRT_INLINE void runIntersections(CandidateLanes<W>& ray, Lanes<bool, W> mask, u
         ray.closest = select(nearer, tfar, ray.closest);
         ray.closestInEmbree = select(nearer, tfar, ray.closestInEmbree);
     }
-    // Embree tests no box where a structure holds one primitive
-    if (structure.geometryCount == 1 && geometry.primitiveCount == 1 && geometry.keyCount == 1) {
+    if (geometry.isLone) {
         const Wide<float3, W> inverse = inverseOf(getObjectRayDirection(ray));
-        mask = mask & meetingBox<W>(getObjectRayOrigin(ray), inverse, geometry.vertices + 6 * uint64_t(primitive), ray.tmin, ray.closest);
+        mask = mask & meetingBox<W>(getObjectRayOrigin(ray), inverse, geometry.vertices, ray.tmin, ray.closest);
         if (none(mask))
             return;
     }
@@ -117,9 +118,7 @@ template <class Programs, int W> void intersectCustoms(const RTCIntersectFunctio
     auto& rayhit = *static_cast<typename Packet<W>::RayHit*>(a->rayhit);
     ray.objectRay = &rayhit.ray;
     ray.embreeHit = &rayhit.hit;
-    const Lanes<bool, W> mask = without(loadValid<W>(a->valid), ray.isTerminated);
-    if (any(mask))
-        runIntersections<Programs>(ray, mask, a->context->instID[0], a->geomID, a->primID);
+    runIntersections<Programs>(ray, *a);
 }
 template <class Programs, int W> void occludeCustoms(const RTCOccludedFunctionNArguments* a) {
     if (const OxrtOwnShape* own = ownShape(*a))
@@ -127,9 +126,7 @@ template <class Programs, int W> void occludeCustoms(const RTCOccludedFunctionNA
     CandidateLanes<W>& ray = *reinterpret_cast<QueryLanes<W>*>(a->context)->candidates;
     ray.objectRay = static_cast<typename CandidateLanes<W>::PacketRay*>(a->ray);
     ray.embreeHit = nullptr;
-    const Lanes<bool, W> mask = without(loadValid<W>(a->valid), ray.isTerminated);
-    if (any(mask))
-        runIntersections<Programs>(ray, mask, a->context->instID[0], a->geomID, a->primID);
+    runIntersections<Programs>(ray, *a);
 }
 
 /* ---- attributes --------------------------------------------------------------------------------------------------------------- */
