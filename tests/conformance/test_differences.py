@@ -33,3 +33,17 @@ def test_hits_next_to_the_origin_begin_at_two_to_the_minus_64(harness: Harness) 
     below, above = trace(harness, [gas(spheres([(0, 0, -1)], [1]))], [ray((0, 0, 0)), ray((0, 0, 0.5))], [hitgroup(kind="sphere")])
     assert missed(below)
     assert closest(above)["tmax"] == 0.5
+
+
+@pytest.mark.parametrize("unit", [1e-14, 1e12])
+def test_any_unit_of_length_will_do(harness: Harness, unit: float) -> None:
+    assert "edges and distances from 1e-14 to 1e12 are hit alike" in PAGE
+    corners = [[coordinate * unit for coordinate in corner] for corner in ((0, 0, 0), (1, 0, 0), (0, 1, 0))]
+    (result,) = trace(harness, [gas(triangles(corners))], [ray((0.25 * unit, 0.25 * unit, 3.0 * unit))])
+    assert closest(result)["tmax"] == pytest.approx(3.0 * unit, rel=1e-6)
+
+
+@pytest.mark.parametrize("length", [1e-17, 1e18])
+def test_any_length_of_direction_will_do(harness: Harness, length: float) -> None:
+    (result,) = trace(harness, [gas(triangles(((0, 0, 0), (1, 0, 0), (0, 1, 0))))], [ray((0.25, 0.25, 3.0), (0, 0, -length), tmax=1e30)])
+    assert closest(result)["tmax"] == pytest.approx(3.0 / length, rel=1e-6)
