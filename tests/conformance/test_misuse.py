@@ -246,5 +246,8 @@ def test_what_two_contexts_share(made: Made) -> None:
                   lambda: pipeline.launch(shader.Params(made.out, foreign, 1.0), made.table, 4)):
         with pytest.raises(ox.OptixError, match=r"context|stale|destroyed"):
             wrong()
+    unwatched = ox.DeviceContext().pipeline_create([made.raygen, made.miss, made.hit])
+    with pytest.raises(ox.InvalidValueError, match="`scene` of Params is of another context than the pipeline"):
+        unwatched.launch(shader.Params(made.out, foreign, 1.0), made.table, 4)
     made.launch(4)
     assert made.out.tolist() == [1.0] * 4

@@ -131,7 +131,7 @@ REFUSED: dict[str, tuple[Callable[[ox.DeviceContext], Any], str]] = {
     "unknown end caps": (strand(endcap_flags=2), "endcap_flags"),
     "two flag words of a curve": (strand(flags=[0, 0]), "flags"),
     "rows in place of an array": (
-        lambda c: c.accel_build([ox.BuildInputTriangles(POINTS.tolist())]), r"vertices .* not a list of list; make one with numpy.array"
+        lambda c: c.accel_build([ox.BuildInputTriangles(POINTS.tolist())]), r"vertices .* not a list of list; make one with numpy"
     ),
     "one number for all radii": (lambda c: c.accel_build([ox.BuildInputSpheres(POINTS, [0.5])]), "radii takes .* not a list of float"),
     "inputs of two types": (

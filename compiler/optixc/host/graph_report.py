@@ -2,36 +2,39 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from typing import Any
 
-from optixc.host.accel import Accel, TraversableHandle, moves_by_transform
+from optixc.errors import InvalidValueError
+from optixc.host.accel import Accel, TraversableHandle
 from optixc.host.structs import layout_of
+
+
+def traversables(params: Any, where: str = "") -> Iterator[tuple[str, Any]]:
+    """The traversables in launch parameters with the names of their fields; handles that do not know what they name are left out."""
+    layout = layout_of(params)
+    for field in layout.fields if layout is not None else ():
+        value = getattr(params, field.name)
+        if isinstance(value, TraversableHandle) and value.accel is not None:
+            yield where + field.name, value.accel
+        elif layout_of(value) is not None:
+            yield from traversables(value, f"{where}{field.name}.")
 
 
 def graph_forms(params: Any) -> dict[str, bool]:
     """For each traversable in launch parameters, by the name of its field: whether Embree walks through it without the kernels.
 
     True for geometry and for one level of instances over static geometry (`Accel.has_native_instances`), False for deeper and moving
-    graphs and for transforms. Handles that do not know their accel are left out.
+    graphs and for transforms.
     """
-    found: dict[str, bool] = {}
-    layout = layout_of(params)
-    for field in layout.fields if layout is not None else ():
-        value = getattr(params, field.name)
-        if isinstance(value, TraversableHandle) and value.accel is not None:
-            found[field.name] = isinstance(value.accel, Accel) and value.accel.is_native
-        elif layout_of(value) is not None:
-            found.update({f"{field.name}.{name}": form for name, form in graph_forms(value).items()})
-    return found
+    return {name: isinstance(one, Accel) and one.is_native for name, one in traversables(params)}
 
 
-def moving_fields(params: Any) -> list[str]:
-    """The traversables in launch parameters that are moved by transforms, by the names of their fields."""
-    found: list[str] = []
-    layout = layout_of(params)
-    for field in layout.fields if layout is not None else ():
-        value = getattr(params, field.name)
-        if isinstance(value, TraversableHandle) and moves_by_transform(value):
-            found.append(field.name)
-        found += [f"{field.name}.{name}" for name in moving_fields(value)]
-    return found
+def check_contexts(params: Any, context: Any) -> None:
+    """Raises if a traversable in launch parameters is of another context, where its handle names something else or nothing."""
+    for name, one in traversables(params):
+        if one._context is not context:
+            raise InvalidValueError(
+                f"launch parameter `{name}` of {type(params).__name__} is of another context than the pipeline; build it with the "
+                "pipeline's DeviceContext"
+            )

@@ -152,8 +152,9 @@ def take_keys(value: Keys, shape: tuple[int | str, ...], where: str) -> list[np.
         raise InvalidValueError(f"{where} is an empty list; motion needs one array per key")
     if not any(isinstance(array, np.ndarray) for array in arrays):
         given = f"a list of {type(arrays[0]).__name__}" if isinstance(value, list | tuple) else type(value).__name__
-        text = f"{where} takes a float32 array of shape ({', '.join(map(str, shape))}{',' if len(shape) == 1 else ''}), or a list of such"
-        raise InvalidValueError(f"{text} arrays, one for each motion key, not {given}; make one with numpy.array(..., numpy.float32)")
+        wanted = f"a float32 array of shape ({', '.join(map(str, shape))}{',' if len(shape) == 1 else ''}), or a list of such arrays"
+        remedy = "make one with numpy.ascontiguousarray(..., numpy.float32)"
+        raise InvalidValueError(f"{where} takes {wanted}, one for each motion key, not {given}; {remedy}")
     taken = [take_array(array, np.float32, shape, where if len(arrays) == 1 else f"{where}[{key}]") for key, array in enumerate(arrays)]
     if any(array.shape != taken[0].shape for array in taken):
         raise InvalidValueError(f"the motion keys of {where} must have one shape, not {', '.join(str(array.shape) for array in taken)}")

@@ -13,9 +13,10 @@ from typing import Any
 from optixc.enums_program import ExceptionFlags
 from optixc.errors import InvalidDeviceContextError, InvalidOperationError, InvalidValueError, ValidationFailureError, from_code
 from optixc.host import bound_values, in_flight, library, structs
+from optixc.host.accel import moves_by_transform
 from optixc.host.array_uses import ArrayUses
 from optixc.host.context import LOG_WARNING, Context
-from optixc.host.graph_report import graph_forms, moving_fields
+from optixc.host.graph_report import check_contexts, graph_forms, traversables
 from optixc.host.groups import ProgramGroup, Record, check_layout
 from optixc.host.owned import Owned
 from optixc.host.sbt import ShaderBindingTable
@@ -122,7 +123,7 @@ class Pipeline(Owned):
             lanes=int(info.lanes), params_size=int(info.paramsSize), max_trace_depth=int(info.maxTraceDepth), library=path, **report
         )
         self._provide_stack(int(info.stackSize))
-        self._arrays = ArrayUses(self._report.arrays, None if uses_motion else self._warn_of_motion)
+        self._arrays = ArrayUses(self._report.arrays, self._look_at_graphs)
         for group in self._groups:
             group.linked_into(self)
 
@@ -156,12 +157,15 @@ class Pipeline(Owned):
         if type(sbt) is not ShaderBindingTable:
             raise InvalidValueError(f"sbt takes a ShaderBindingTable, not {type(sbt).__name__}")
 
-    def _warn_of_motion(self, params: Any) -> None:
+    def _look_at_graphs(self, params: Any) -> None:
         """Rays of a pipeline without motion miss what transforms move, as OptiX's do: too quiet an end for a forgotten option."""
-        moving = moving_fields(params) if not self._is_motion_told else ()
-        if moving:
+        check_contexts(params, self._context)
+        if self.uses_motion or self._is_motion_told:
+            return
+        moving = next((name for name, one in traversables(params) if moves_by_transform(one)), None)
+        if moving is not None:
             self._is_motion_told = True
-            text = f"`{moving[0]}` of the launch parameters holds motion transforms; rays of a pipeline without motion miss what is below"
+            text = f"`{moving}` of the launch parameters holds motion transforms; rays of a pipeline without motion miss what is below"
             remedy = "give pipeline_create options=ox.PipelineCompileOptions(uses_motion_blur=True)"
             self._context.log(LOG_WARNING, "LAUNCH", f"{text}; {remedy}")
 
