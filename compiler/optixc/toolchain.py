@@ -123,7 +123,9 @@ def _arguments(compiler: Compiler, build: Build) -> tuple[str, ...]:
 
 def _libraries(compiler: Compiler) -> tuple[str, ...]:
     """What a shared object is linked to: libm. The linker need not read the C++ library, where the compiler can leave it out."""
-    return ("-lm", "-nostdlib++") if compiler.kind == "clang" or compiler.version >= (_GCC_WITHOUT_LIBRARY,) else ("-lm",)
+    if compiler.kind == "clang":
+        return ("-lm", "-nostdlib++", "-static-libgcc")
+    return ("-lm", "-nostdlib++") if compiler.version >= (_GCC_WITHOUT_LIBRARY,) else ("-lm",)
 
 
 def find_compiler(memory: Path | None = None) -> Compiler:

@@ -102,6 +102,8 @@ def test_the_command_writes_one_symbol(tmp_path: Path, name: str, monkeypatch: p
     if shutil.which("nm"):
         listed = subprocess.run(["nm", "-D", "--defined-only", str(tmp_path / "made.so")], capture_output=True, text=True, check=True)
         assert re.findall(r" \w (\w+)", listed.stdout) == ["oxrt_pipeline_v1"]
+        needs = subprocess.run(["readelf", "-d", str(tmp_path / "made.so")], capture_output=True, text=True, check=True)
+        assert set(re.findall(r"NEEDED.*\[(\w+)\.", needs.stdout)) <= {"libm", "libc"}
     assert cli.main([shader, "--target", "x86-64", "--simd", "8"]) == cli.EXIT_USAGE
     assert cli.main([shader, "--target", "x86-64-v3", "--simd", "16"]) == cli.EXIT_USAGE
     assert "the most is 8" in capsys.readouterr().err
