@@ -133,8 +133,8 @@ class Clones:
             text = self._parameter(parameter, parameter.local.name in clone.varying, parameter.local.name in assigned)
             parameters.append(f"{text} {names.locals[parameter.local.name]}" if parameter.local.name in used else text)
         result = self._types.name(function.result, clone.result_varies)
-        template = head_prefix(function, needs)
-        return f"{template}{result} {self.name(clone)}({', '.join(parameters)})"
+        prefix = head_prefix(function, needs) + ("OXRT_INLINE " if self._signatures.inlines((function,)) else "")
+        return f"{prefix}{result} {self.name(clone)}({', '.join(parameters)})"
 
     def callee_name(self, clone: Clone) -> str:
         """The function as a call names it, inside of a function that has its programs as a template argument."""

@@ -14,7 +14,7 @@ def small_candidate_functions(pipeline: Pipeline) -> set[str]:
     """Any-hit programs and the helpers that they call, where they are small and nobody steps through them.
 
     They run for every candidate of a traversal, and C++ compilers share them as soon as two payload classes can run them: cut-outs over
-    scalar code were 1.5 % slower so. For intersection programs no difference was seen.
+    scalar code were 1.5 % slower so, over lanes 2.5 %. For intersection programs no difference was seen.
     """
     waiting = [program for program in pipeline.programs if program.kind is ProgramKind.ANYHIT]
     if pipeline.options.debug or not waiting:

@@ -90,9 +90,9 @@ OXRT_INLINE const OxrtRecordHeader* findHitRecord(Ray& ray) {
 /* ---- candidates ------------------------------------------------------------------------------------------------------------------- */
 
 /* Whether any-hit programs run: the ray's flag beats the instance's, which beats the geometry's; ENFORCE beats DISABLE. */
-OXRT_INLINE bool anyHitEnabled(const Ray& ray, uint32_t instanceFlags, uint32_t geometryFlags) {
-    if (ray.flags & (RAY_DISABLE_ANYHIT | RAY_ENFORCE_ANYHIT))
-        return ray.flags & RAY_ENFORCE_ANYHIT;
+OXRT_INLINE bool anyHitEnabled(uint32_t rayFlags, uint32_t instanceFlags, uint32_t geometryFlags) {
+    if (rayFlags & (RAY_DISABLE_ANYHIT | RAY_ENFORCE_ANYHIT))
+        return rayFlags & RAY_ENFORCE_ANYHIT;
     if (instanceFlags & (INSTANCE_DISABLE_ANYHIT | INSTANCE_ENFORCE_ANYHIT))
         return instanceFlags & INSTANCE_ENFORCE_ANYHIT;
     return !(geometryFlags & GEOMETRY_DISABLE_ANYHIT);
@@ -124,18 +124,15 @@ template <class Programs> OXRT_INLINE void runAnyHit(Ray& ray, const OxrtRecordH
 template <class Programs, bool MAY_CULL> inline constexpr bool mayHaveSoleRecord =
     Programs::hasAnyHit && !MAY_CULL && !Programs::usesMicromaps;
 
-/* Looks beforehand whether all candidates have one record, whose any-hit program runs. In the callbacks that is a chain of loads, one after
-   the other, in front of those of the program. */
-OXRT_INLINE void findSoleRecord(Ray& ray) {
-    const OxrtTraversableView& root = *ray.root;
-    ray.soleRecord = nullptr;
-    if (ray.path || root.geometryCount != 1 || (root.needs & OXRT_SCENE_HAS_CURVES) || root.geometries->recordOffsets)
-        return;
-    if (!anyHitEnabled(ray, 0, root.geometries->recordFlags[0]))
-        return;
-    const OxrtLaunch& launch = *ray.thread->launch;
-    ray.recordIndex = ray.sbtOffset;
-    ray.soleRecord = findRecord(launch, launch.hitgroupRecords, launch.hitgroupStride, launch.hitgroupCount, ray.recordIndex);
+/* The one record of all candidates of a trace, if they have one and its any-hit program runs. It is looked for beforehand: in the callbacks
+   that is a chain of loads, one after the other, in front of those of the program. Not for paths through a graph. */
+OXRT_INLINE const OxrtRecordHeader* findSoleRecord(const OxrtLaunch& launch, const OxrtTraversableView& root, uint32_t rayFlags,
+                                                   uint32_t sbtOffset) {
+    if (root.geometryCount != 1 || (root.needs & OXRT_SCENE_HAS_CURVES) || root.geometries->recordOffsets)
+        return nullptr;
+    if (!anyHitEnabled(rayFlags, 0, root.geometries->recordFlags[0]))
+        return nullptr;
+    return findRecord(launch, launch.hitgroupRecords, launch.hitgroupStride, launch.hitgroupCount, sbtOffset);
 }
 
 /* What becomes of a candidate for which no any-hit program runs. */
@@ -152,7 +149,7 @@ template <class Programs, bool MAY_CULL> OXRT_INLINE Verdict judge(Ray& ray) {
         if constexpr (Programs::usesMicromaps)
             if (!passesMicromap(ray, instanceFlags, geometryFlags))
                 return Verdict::Ignore;
-        const bool runsAnyHit = anyHitEnabled(ray, instanceFlags, geometryFlags);
+        const bool runsAnyHit = anyHitEnabled(ray.flags, instanceFlags, geometryFlags);
         if constexpr (MAY_CULL)
             if (isCulled(ray, instanceFlags, geometryFlags, runsAnyHit))
                 return Verdict::Ignore;

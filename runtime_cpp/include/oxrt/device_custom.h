@@ -47,7 +47,7 @@ template <class Programs> OXRT_INLINE void runIntersection(Ray& ray, RTCRay& emb
     if (Programs::hasAnyHit || (ray.flags & RAY_CULL_ANY)) {
         const uint32_t instanceFlags = ray.instance ? ray.instance->flags : 0;
         const uint32_t geometryFlags = ray.geometry->recordFlags[localRecord(ray)];
-        ray.runsAnyHit = anyHitEnabled(ray, instanceFlags, geometryFlags);
+        ray.runsAnyHit = anyHitEnabled(ray.flags, instanceFlags, geometryFlags);
         if ((ray.flags & RAY_CULL_ANY) && isCulled(ray, instanceFlags, geometryFlags, ray.runsAnyHit))
             return; /* before the program runs, as in OptiX */
     }

@@ -85,8 +85,10 @@ template <class Programs, class Flags, class Arguments> OXRT_INLINE void setCall
     if constexpr (mayHaveCandidates<Programs, Flags>) {
         if (mayFilter<Programs>(ray.flags, *ray.root))
             arguments.filter = filterCandidate<Programs, Known::mayCull>;
-        if constexpr (mayHaveSoleRecord<Programs, Known::mayCull>)
-            findSoleRecord(ray);
+        if constexpr (mayHaveSoleRecord<Programs, Known::mayCull>) {
+            ray.recordIndex = ray.sbtOffset;
+            ray.soleRecord = ray.path ? nullptr : findSoleRecord(*ray.thread->launch, *ray.root, ray.flags, ray.sbtOffset);
+        }
         if (filtersEverything<Programs>(ray.flags, *ray.root))
             arguments.flags = RTC_RAY_QUERY_FLAG_INVOKE_ARGUMENT_FILTER;
     }

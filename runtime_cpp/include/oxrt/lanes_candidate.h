@@ -30,6 +30,7 @@ template <int W> struct CandidateLanes : RayLanes<W> {
     bool isCoherent;
     bool hasCommonRecord; /* SBT offset and stride are the same in all lanes: */
     uint32_t commonOffset, commonStride;
+    const OxrtRecordHeader* soleRecord; /* of all candidates on built-in primitives, or null */
 
     OXRT_INLINE explicit CandidateLanes(PacketParts<W> rays) : RayLanes<W>(rays) {}
     static OXRT_INLINE void* operator new(__SIZE_TYPE__, void* place) { return place; }
@@ -151,6 +152,27 @@ template <int W> OXRT_INLINE Lanes<bool, W> loadValid(const int* valid) {
     return loadLanes<int32_t, W>(values) == int32_t(-1);
 }
 
+/* The geometry's, the instance's, the micromap's and the ray's word on culling and any-hit programs: the candidates that are accepted unless
+   their programs object. The active lanes are those whose programs run, their records are known. */
+template <class Programs, bool MAY_CULL, int W>
+OXRT_INLINE Lanes<bool, W> findCandidatePrograms(CandidateLanes<W>& ray, Lanes<bool, W> offered) {
+    enterHits(ray, offered);
+    Lanes<uint32_t, W> flags = geometryFlags(ray);
+    const Lanes<uint32_t, W> instanceFlags = instanceField<uint32_t>(ray, OXRT_FIELD_OFFSET(OxrtInstanceView, flags), 0u);
+    Lanes<bool, W> accepted = offered;
+    if constexpr (Programs::Scalar::usesMicromaps)
+        accepted = passesMicromaps(ray, offered, instanceFlags, flags);
+    const Lanes<bool, W> runs = anyHitEnabled(ray, instanceFlags, flags);
+    if constexpr (MAY_CULL)
+        accepted = without(accepted, culledLanes(ray, instanceFlags, flags, runs));
+    if constexpr (Programs::Scalar::hasAnyHit) {
+        ray.active = accepted & runs;
+        if (any(ray.active))
+            ray.active = findHitRecords(ray);
+    }
+    return accepted;
+}
+
 /* Embree's filter callback: candidates on built-in primitives. */
 template <class Programs, bool MAY_CULL, int W> void filterCandidates(const RTCFilterFunctionNArguments* arguments) {
     CandidateLanes<W>& ray = *reinterpret_cast<QueryLanes<W>*>(arguments->context)->candidates;
@@ -160,26 +182,20 @@ template <class Programs, bool MAY_CULL, int W> void filterCandidates(const RTCF
     __builtin_memcpy(&ray.packet.hit, arguments->hit, sizeof(ray.packet.hit));
     ray.objectRay = static_cast<typename CandidateLanes<W>::PacketRay*>(arguments->ray);
     ray.t = packetLanes<W>(ray.objectRay->tfar);
-    enterHits(ray, offered);
-    // the geometry's, the instance's, the micromap's and the ray's word on culling and any-hit programs
-    Lanes<uint32_t, W> flags = geometryFlags(ray);
-    const Lanes<uint32_t, W> instanceFlags = instanceField<uint32_t>(ray, OXRT_FIELD_OFFSET(OxrtInstanceView, flags), 0u);
     Lanes<bool, W> accepted = offered;
-    if constexpr (Programs::Scalar::usesMicromaps)
-        accepted = passesMicromaps(ray, offered, instanceFlags, flags);
-    const Lanes<bool, W> runs = anyHitEnabled(ray, instanceFlags, flags);
-    if constexpr (MAY_CULL)
-        accepted = without(accepted, culledLanes(ray, instanceFlags, flags, runs));
     Lanes<bool, W> stopped = false;
-    if constexpr (Programs::Scalar::hasAnyHit) {
-        ray.active = accepted & runs;
-        if (any(ray.active))
-            ray.active = findHitRecords(ray);
+    ray.records.common = mayHaveSoleRecord<typename Programs::Scalar, MAY_CULL> ? ray.soleRecord : nullptr;
+    if (ray.records.common) {
+        ray.active = offered;
+        ray.commonInstance = nullptr;
+        ray.commonGeometry = ray.root->geometries;
+    } else
+        accepted = findCandidatePrograms<Programs, MAY_CULL>(ray, offered);
+    if constexpr (Programs::Scalar::hasAnyHit)
         if (const Lanes<bool, W> asked = ray.active; any(asked)) {
             accepted = without(accepted, asked) | runAnyHits<Programs>(ray);
             stopped = ray.stopped;
         }
-    }
     if (ray.flags & RAY_TERMINATE_ON_FIRST_HIT)
         stopped |= accepted;
     storeLanes<int32_t, W>(*reinterpret_cast<int32_t(*)[W]>(arguments->valid), select(accepted, int32_t(-1), int32_t(0)));

@@ -99,7 +99,7 @@ template <class Programs, int W, class Arguments> OXRT_INLINE void runIntersecti
     if (Scalar::hasAnyHit || (ray.flags & RAY_CULL_ANY)) {
         const uint32_t flags = geometry.recordFlags[record];
         common.flags = ray.flags;
-        ray.runsAnyHit = anyHitEnabled(common, instanceFlags, flags);
+        ray.runsAnyHit = anyHitEnabled(common.flags, instanceFlags, flags);
         if ((ray.flags & RAY_CULL_ANY) && isCulled(common, instanceFlags, flags, ray.runsAnyHit))
             return;
     }

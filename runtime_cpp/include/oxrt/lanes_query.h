@@ -215,6 +215,9 @@ OXRT_INLINE Lanes<bool, W> traverseCandidates(RayLanes<W>& ray, Lanes<bool, W> m
     if constexpr (Programs::callbacksUsePayload)
         payloadCopy = payload;
     beginCandidates<Programs>(candidates, ray, &payloadCopy, isCoherent);
+    if constexpr (mayHaveSoleRecord<Scalar, FlagTraits<Flags>::mayCull>)
+        candidates.soleRecord = candidates.hasCommonRecord ? findSoleRecord(*ray.thread->thread->launch, *ray.root, ray.flags, candidates.commonOffset)
+                                                           : nullptr;
     if constexpr (!ANY)
         clearHits(ray);
     queryCandidates<Programs, Flags, ANY>(candidates, ray.packet.whole(), mask);

@@ -117,7 +117,7 @@ OXRT_INLINE void anyhit_glass(oxrt::Ray& trace, Shadow& shadow, const Glass& gla
 }
 
 #line 120 "pipeline.cpp"
-void stop_if_dark_lanes([[maybe_unused]] Rays& trace, [[maybe_unused]] Mask mask, const Wide<Shadow>& shadow);
+OXRT_INLINE void stop_if_dark_lanes([[maybe_unused]] Rays& trace, [[maybe_unused]] Mask mask, const Wide<Shadow>& shadow);
 
 #line 36 "shader.py"
 void raygen_lights_lanes([[maybe_unused]] Lanes& thread, [[maybe_unused]] Mask mask) {
@@ -135,7 +135,7 @@ void raygen_lights_lanes([[maybe_unused]] Lanes& thread, [[maybe_unused]] Mask m
 }
 
 #line 30 "shader.py"
-void stop_if_dark_lanes([[maybe_unused]] Rays& trace, [[maybe_unused]] Mask mask, const Wide<Shadow>& shadow) {
+OXRT_INLINE void stop_if_dark_lanes([[maybe_unused]] Rays& trace, [[maybe_unused]] Mask mask, const Wide<Shadow>& shadow) {
     [[maybe_unused]] Lanes& thread = *trace.thread;
     const Mask test = shadow.light.x < 0.01f;
 #line 31 "shader.py"
@@ -150,7 +150,8 @@ void stop_if_dark_lanes([[maybe_unused]] Rays& trace, [[maybe_unused]] Mask mask
 }
 
 #line 52 "shader.py"
-void anyhit_glass_lanes([[maybe_unused]] Rays& trace, [[maybe_unused]] Mask mask, Wide<Shadow>& shadow, const Wide<Glass>& glass) {
+OXRT_INLINE void anyhit_glass_lanes([[maybe_unused]] Rays& trace, [[maybe_unused]] Mask mask, Wide<Shadow>& shadow,
+        const Wide<Glass>& glass) {
     [[maybe_unused]] Lanes& thread = *trace.thread;
 #line 53 "shader.py"
     oxrt::assign(mask, shadow.hits, shadow.hits + 1);
@@ -191,7 +192,7 @@ void miss_dark_lanes([[maybe_unused]] Lanes& thread, [[maybe_unused]] Mask mask,
     oxrt::assign(mask, shadow.light, oxrt::float3(0.0f));
 }
 
-#line 195 "pipeline.cpp"
+#line 196 "pipeline.cpp"
 void ShadowPrograms::anyHit(oxrt::Ray& trace, Payload& payload, const OxrtRecordHeader& record) {
     if (record.programs[oxrt::SLOT_ANYHIT] == number::anyhit_glass)
         anyhit_glass(trace, payload, oxrt::recordData<Glass>(record));
