@@ -1,3 +1,5 @@
+import numpy as np
+
 import optixc as ox
 
 
@@ -32,6 +34,9 @@ def __raygen__b():
     e = OPTIX_EXCEPTION_CODE_STACK_OVERFLOW  # E[OX301]: did you mean `ox.ExceptionCodes.STACK_OVERFLOW`?
     f = OptixVisibilityMask(255)  # E[OX301]: a visibility mask is a plain number of 8 bits
     g = OPTIX_WEATHER_SUNNY  # E[OX301]: nothing defines it
+    i = np.sqrt(2.0)  # E[OX206]: did you mean `ox.sqrt`?
+    j = np.pi  # E[OX206]: did you mean `ox.pi`?
+    k = np.array(1.0)  # E[OX206]: only constants and helpers can
     h = make_float()  # E[OX301]: did you mean `make_floats`?
     p, q = ox.trace(ox.Traversable(0), ox.float3(0.0), ox.float3(1.0), 0.0, 1.0, 0.0, 255, 0, 0, 1, 0, 1, 2)  # E[OX305]: payload=(p0, p1)
 

@@ -123,7 +123,7 @@ def _check_name(c: Context, node: ast.Name) -> ExprInfo:
     return symbol_value(c, node, symbol)
 
 
-def symbol_value(c: Context, node: ast.expr, symbol: Symbol) -> ExprInfo:
+def symbol_value(c: Context, node: ast.expr, symbol: Symbol, note: str = "") -> ExprInfo:
     """A module-level name as a value."""
     match symbol:
         case ParamsSymbol(struct=struct):
@@ -146,7 +146,7 @@ def symbol_value(c: Context, node: ast.expr, symbol: Symbol) -> ExprInfo:
         case SkippedName(reason=reason, span=span, code=code):
             place = f", see {span}" if span is not None else ""
             message = f"`{ast.unparse(node)}` cannot be used in a shader: it is {reason}{place}"
-            return c.error(code, node, message, "only constants and helpers can")
+            return c.error(code, node, message, note or "only constants and helpers can")
         case FunctionSymbol():
             return c.error("OX402", node, f"the function `{ast.unparse(node)}` is not a value", "call it")
         case StructSymbol() | EnumSymbol():
@@ -183,7 +183,7 @@ def _attribute_note(type_: object) -> str:
 
 def _unknown_member(c: Context, node: ast.Attribute, base: Symbol) -> ExprInfo:
     if isinstance(base, SkippedName):
-        return symbol_value(c, node.value, base)
+        return symbol_value(c, node.value, base, other_spelling(node.attr))
     text = ast.unparse(node.value)
     if isinstance(base, EnumSymbol):
         near = difflib.get_close_matches(node.attr, base.members, 1)
