@@ -26,6 +26,8 @@ from optixc.ir import layout, nodes
 from optixc.ir.text import print_module
 from optixc.ir.types import Struct, StructKind
 from optixc.options import MAX_TRACE_DEPTH, TARGETS, BoundValue, CompileOptions
+from optixc.passes.live_notes import live_notes
+from optixc.passes.pipeline import LinkError, link
 from optixc.version import __version__
 
 EXIT_SHADER, EXIT_USAGE, EXIT_TOOLCHAIN = 1, 2, 3
@@ -153,7 +155,7 @@ def _emit(chosen: argparse.Namespace, unit: driver.Unit, names: list[str], optio
         print(print_types(result.checked))
         return
     if chosen.emit == "ir" and chosen.print_after is None:
-        print(print_module(result.module))
+        print(_print_ir(result.module, options))
         return
     emitted = driver.emit([result.module], names, options, lambda name, pipeline: _print_pass(chosen.print_after, name, pipeline))
     if chosen.emit == "asm":
@@ -163,12 +165,21 @@ def _emit(chosen: argparse.Namespace, unit: driver.Unit, names: list[str], optio
     elif chosen.emit == "cpp":
         print(emitted.text)
     elif chosen.emit == "ir":
-        print(print_module(emitted.pipeline))
+        print(print_module(emitted.pipeline, live_notes(emitted.pipeline)))
+
+
+def _print_ir(module: nodes.Module, options: CompileOptions) -> str:
+    """The module as text, with what is live at traces and programs if its programs are a pipeline of their own."""
+    try:
+        linked = link([module], [program.name for program in module.programs], driver.pipeline_options(options, module.params))
+    except LinkError:
+        return print_module(module)
+    return print_module(module, live_notes(linked))
 
 
 def _print_pass(wanted: str | None, name: str, pipeline: nodes.Pipeline) -> None:
     if name == wanted:
-        print(print_module(pipeline))
+        print(print_module(pipeline, live_notes(pipeline)))
 
 
 def _write(chosen: argparse.Namespace, unit: driver.Unit, names: list[str], options: CompileOptions, store: Cache) -> None:

@@ -18,10 +18,8 @@ import numpy as np
 
 from optixc import passes, shader_keys, toolchain
 from optixc.cache import Cache
-from optixc.codegen.cpp_types import payload_words, word_count
 from optixc.codegen.emit import emit as emit_cpp
-from optixc.codegen.payload_use import used_words
-from optixc.codegen.program_classes import constant, payload_of, trace_depth, traces_of
+from optixc.codegen.program_classes import trace_depth
 from optixc.codegen.word_limits import first_excess
 from optixc.errors import (
     InvalidAttributeAccessError,
@@ -40,8 +38,11 @@ from optixc.options import EVERY_X86, BoundValue, CompileOptions
 from optixc.passes.array_uses import ArrayUse, array_uses
 from optixc.passes.callables import signatures_called
 from optixc.passes.features import Features, features
+from optixc.passes.live_notes import Carried, carried_words
+from optixc.passes.live_words import numbers
 from optixc.passes.pipeline import LinkError, link
 from optixc.passes.specialize import parameter_path
+from optixc.passes.traced_programs import constant, payload_of, traces_of
 from optixc.shader_keys import dependencies_key, file_key, places
 from optixc.signed_json import Json, digest
 from optixc.stack_usage import frames_of_programs
@@ -279,8 +280,8 @@ def _describe_place(function: nodes.Function) -> Json:
     return {"name": function.source_name, "path": span.path, "first": span.line, "last": last}
 
 
-def _describe_trace(pipeline: nodes.Pipeline, trace: nodes.Trace) -> Json:
-    """What of a trace decides the records that it reaches; None for what is no constant."""
+def _describe_trace(trace: nodes.Trace, words: Carried | None) -> Json:
+    """What of a trace decides the records that it reaches, None for what is no constant; and the words of its payload."""
     sbt_offset, sbt_stride, miss = (constant(argument) for argument in trace.arguments[8:11])
     return {
         "name": trace.name,
@@ -290,8 +291,8 @@ def _describe_trace(pipeline: nodes.Pipeline, trace: nodes.Trace) -> Json:
         "miss": miss,
         "payload": _payload_text(trace.payload_type),
         "payload_name": trace.payload_type.name if trace.payload_type is not None else None,
-        "words": word_count(trace.payload_type) if trace.payload_type is not None else 0,
-        "used_words": sorted(used_words(pipeline, trace.payload_type)) if trace.payload_type is not None else [],
+        "words": layout.payload_words(trace.payload_type) if trace.payload_type is not None else 0,
+        "carried_words": numbers(words.carried) if words is not None else [],
     }
 
 
@@ -304,14 +305,14 @@ def _describe_use(use: ArrayUse) -> Json:
 def _trace_text(use: Json) -> str:
     given = (("sbt_offset", "sbt_offset"), ("sbt_stride", "sbt_stride"), ("miss", "miss_sbt_index"))
     words = ", ".join(f"{name} {use[key] if use[key] is not None else 'varies'}" for key, name in given)
-    used = "" if len(use["used_words"]) == use["words"] else f", {len(use['used_words'])} of them used by programs"
-    carried = f"payload {use['payload_name']} of {use['words']} words{used}" if use["payload"] else "no payload"
+    live = "" if len(use["carried_words"]) == use["words"] else f", {len(use['carried_words'])} of them carried"
+    carried = f"payload {use['payload_name']} of {use['words']} words{live}" if use["payload"] else "no payload"
     return f"{use['place']}: {use['name']}, {words}, {carried}"
 
 
 def _payload_text(payload: t.Struct | None) -> str | None:
     """The words of a payload: programs and traces with equal texts fit."""
-    return ",".join(map(str, payload_words(payload))) if payload is not None else None
+    return ",".join(map(str, layout.payload_scalars(payload))) if payload is not None else None
 
 
 def _estimated_frame(program: nodes.Function) -> int:
@@ -328,7 +329,8 @@ def _describe_params(params: t.Struct | None) -> Json | None:
 
 
 def _describe(emitted: Emitted, options: CompileOptions, compiler: toolchain.Compiler) -> Json:
-    uses = [_describe_trace(emitted.pipeline, trace) for _, trace in traces_of(emitted.pipeline) if trace.arguments]
+    words = carried_words(emitted.pipeline)
+    uses = [_describe_trace(trace, words.get(id(trace))) for _, trace in traces_of(emitted.pipeline) if trace.arguments]
     return {
         "compiler": str(compiler),
         "programs": [program.name for program in emitted.pipeline.programs],

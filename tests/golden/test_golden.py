@@ -26,6 +26,7 @@ from optixc.ir.intrinsic_rows import INTRINSICS
 from optixc.ir.text import print_module
 from optixc.ir.verify import verify
 from optixc.passes.features import features
+from optixc.passes.live_notes import live_notes
 from optixc.passes.pipeline import link
 
 FOLDER = Path(__file__).parent
@@ -57,10 +58,11 @@ def outputs(case: str) -> dict[str, str]:
     finally:
         os.chdir(here)
     assert verify(module) == []
-    texts = {"module.ir": print_module(module)}
+    texts = {}
     for lanes, name in ((1, "pipeline.cpp"), (16, "pipeline_spmd.cpp")):
         options = nodes.PipelineOptions(**{**options_of(source), "lanes": lanes})
         linked = link([module], [program.name for program in module.programs], options)
+        texts["module.ir"] = print_module(module, live_notes(linked))
         pipeline = passes.run(linked, lambda name_, result: check(name_, result))
         if emitted_lanes(pipeline) == lanes:
             texts[name] = emit(pipeline, features(pipeline))

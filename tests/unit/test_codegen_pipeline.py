@@ -25,12 +25,13 @@ from optixc.codegen.declarations import declarations
 from optixc.codegen.header import emit_header
 from optixc.codegen.helper_calls import recursive_helpers
 from optixc.codegen.needs import needs_of_pipeline
-from optixc.codegen.program_classes import accepts, known_flags, program_classes, trace_depth
+from optixc.codegen.program_classes import program_classes, trace_depth
 from optixc.ir import nodes as n
 from optixc.ir import types as t
 from optixc.passes.callables import callables_with, signatures_called
 from optixc.passes.features import features
 from optixc.passes.pipeline import link
+from optixc.passes.traced_programs import accepts, known_flags
 
 SAME_WORDS = t.Struct("Alike", t.StructKind.PAYLOAD, (t.StructField("a", t.FLOAT32), t.StructField("bc", t.FLOAT2)))
 OTHER_WORDS = t.Struct("Other", t.StructKind.PAYLOAD, (t.StructField("color", t.INT3),))

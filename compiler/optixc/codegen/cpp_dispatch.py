@@ -8,12 +8,13 @@ from __future__ import annotations
 from optixc.codegen.cpp_signatures import Signatures, used_parameters
 from optixc.codegen.cpp_types import TypeNames
 from optixc.codegen.needs import EXCEPTION_FLAG_STACK_OVERFLOW
-from optixc.codegen.program_classes import ProgramClass, callables_nest, payload_of
+from optixc.codegen.program_classes import ProgramClass, callables_nest
 from optixc.codegen.writer import Writer
 from optixc.ir.nodes import Function, ParameterRole, Pipeline, is_reference_type
 from optixc.ir.programs import ProgramKind
 from optixc.ir.types import Struct, Void
 from optixc.passes.callables import CallableSignature, callables_with
+from optixc.passes.traced_programs import payload_of
 
 SLOTS = {
     ProgramKind.CLOSESTHIT: "oxrt::SLOT_CLOSESTHIT",

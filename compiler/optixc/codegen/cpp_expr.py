@@ -75,6 +75,9 @@ class Dialect(Protocol):
     def helper(self, node: HelperCall, arguments: tuple[str, ...]) -> Code:
         """A helper that writes nothing."""
 
+    def carries(self, struct: Struct, field: str) -> bool:
+        """Whether the C++ struct has the field."""
+
 
 _OPERATORS: dict[BinaryOp, tuple[str, int]] = {
     BinaryOp.ADD: ("+", ADD),
@@ -267,9 +270,11 @@ class Expressions:
                     arguments = [f"{row_type}({', '.join(arguments[i : i + columns])})" for i in starts]
                 return Code(f"{name}{{{{{', '.join(arguments)}}}}}")
             case Struct(fields=fields):
-                return Code(f"{name}{{{', '.join(self._initialisers([field.type for field in fields], node, arguments))}}}")
+                parts = zip(fields, node.arguments, arguments, strict=True)
+                kept = [(field.type, value, text) for field, value, text in parts if self._dialect.carries(node.type, field.name)]
+                return Code(f"{name}{{{', '.join(self._initialisers(node, kept))}}}")
             case FixedArray(element=element):
-                items = self._initialisers([element] * len(arguments), node, arguments)
+                items = self._initialisers(node, [(element, value, text) for value, text in zip(node.arguments, arguments, strict=True)])
                 return Code(f"{name}{{{{{', '.join(items)}}}}}" if items else f"{name}{{}}")
             case CoopVec():
                 return Code(f"oxrt::coopVecOf<{name}>({', '.join(arguments)})")
@@ -278,10 +283,10 @@ class Expressions:
             case _:
                 return Code(f"{name}({', '.join(arguments)})")
 
-    def _initialisers(self, types: list[Type], node: Construct, arguments: list[str]) -> list[str]:
-        """Initialisers of a struct's fields or an array's items; storage types are narrowed as an assignment would."""
+    def _initialisers(self, node: Construct, values: list[tuple[Type, Expr, str]]) -> list[str]:
+        """Initialisers of a struct's fields or an array's items, with their types; storage types are narrowed as an assignment would."""
         parts = []
-        for type_, argument, text in zip(types, node.arguments, arguments, strict=False):
+        for type_, argument, text in values:
             if isinstance(type_, Scalar) and type_ != argument.type:
                 parts.append(f"{self._dialect.type_name(type_, argument)}({text})")
             else:

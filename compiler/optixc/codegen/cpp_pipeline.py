@@ -14,7 +14,7 @@ from optixc.codegen.cpp_types import TypeNames, structs_within
 from optixc.codegen.helper_calls import callees_first, recursive_helpers
 from optixc.codegen.names import Scope, string_literal
 from optixc.codegen.needs import needs_of_pipeline, options_of
-from optixc.codegen.program_classes import program_classes, traces_of
+from optixc.codegen.program_classes import program_classes
 from optixc.codegen.writer import Writer
 from optixc.ir.layout import size_of
 from optixc.ir.nodes import Function, ParameterRole, Pipeline
@@ -22,7 +22,9 @@ from optixc.ir.programs import ProgramKind
 from optixc.ir.types import Struct
 from optixc.ir.walk import expressions
 from optixc.passes.callables import CallableSignature, signatures_called
+from optixc.passes.drop_dead_words import unread_fields
 from optixc.passes.features import Features
+from optixc.passes.traced_programs import traces_of
 from optixc.version import __version__
 
 _KINDS = {kind: f"OXRT_KIND_{kind.name}" for kind in ProgramKind}
@@ -41,7 +43,7 @@ class PipelineFile:
         self._features = features
         self._writer = Writer()
         self._scope = Scope(taken=("number", "programs", "variants", "Payload", "Programs", "LANES", "Wide", "Mask", "Lanes", "Rays"))
-        self._types = TypeNames(structs_of(pipeline), self._scope)
+        self._types = TypeNames(structs_of(pipeline), self._scope, unread_fields(pipeline))
         needs = needs_of_pipeline(pipeline)
         self._classes = program_classes(pipeline, needs)
         self._signatures = Signatures(pipeline, self._types, self._scope, needs, self._classes)

@@ -8,7 +8,6 @@ from optixc.codegen.cpp_signatures import FunctionNames, Signatures
 from optixc.codegen.cpp_types import TypeNames
 from optixc.codegen.names import Scope, string_literal
 from optixc.codegen.needs import REPORT, THROW, Options
-from optixc.codegen.program_classes import known_flags
 from optixc.ir.intrinsic_rows import ATOMIC_NAMES, INTRINSICS
 from optixc.ir.intrinsic_rows_coop_vec import COOP_VEC_NAMES
 from optixc.ir.intrinsics import Effect, Intrinsic, State
@@ -29,6 +28,7 @@ from optixc.ir.nodes import (
 )
 from optixc.ir.types import Struct
 from optixc.ir.walk import expressions
+from optixc.passes.traced_programs import known_flags
 
 _FLAGS_ARGUMENT = 7
 

@@ -11,7 +11,7 @@ from optixc.ir.intrinsic_rows import INTRINSICS
 from optixc.ir.intrinsic_rows_coop_vec import COOP_VEC_NAMES
 from optixc.ir.intrinsics import State
 from optixc.ir.nodes import ElementRef, Expr, HelperCall, IndexRef, IntrinsicCall, Literal, Local, Logical, Select
-from optixc.ir.types import Type
+from optixc.ir.types import Struct, Type
 
 
 class ScalarDialect:
@@ -63,6 +63,9 @@ class ScalarDialect:
         template = f"<{self._types.name(node.type)}>" if node.name == HIT_OBJECT_DATA else ""
         name = callee(node) if node.name in COOP_VEC_NAMES else row.cpp
         return Code(f"{name}{template}({', '.join([*hidden, *arguments])})")
+
+    def carries(self, struct: Struct, field: str) -> bool:
+        return self._types.carries(struct, field)
 
     def helper(self, node: HelperCall, arguments: tuple[str, ...]) -> Code:
         hidden = self._signatures.hidden_arguments(node.function, self._names)

@@ -11,7 +11,6 @@ from optixc.codegen.cpp_spmd_items import ItemLoops, has_varying_index
 from optixc.codegen.cpp_spmd_types import WideTypes
 from optixc.codegen.names import string_literal
 from optixc.codegen.needs import REPORT, THROW, Options
-from optixc.codegen.program_classes import known_flags
 from optixc.ir.intrinsic_rows import INTRINSICS
 from optixc.ir.intrinsic_rows_coop_vec import COOP_VEC_NAMES
 from optixc.ir.intrinsics import Effect, Intrinsic, State
@@ -31,6 +30,7 @@ from optixc.ir.nodes import (
     is_reference_type,
 )
 from optixc.ir.types import FixedArray, Struct
+from optixc.passes.traced_programs import known_flags
 from optixc.passes.uniformity import Clone
 
 HIT_OBJECT_SETTERS = frozenset({"make_nop_hit_object", "hit_object_set_sbt_record_index", "reorder"})

@@ -31,7 +31,7 @@ from optixc.ir.nodes import (
     Logical,
     Select,
 )
-from optixc.ir.types import Scalar, ScalarKind, Tuple, Type, Vector, scalar_of
+from optixc.ir.types import Scalar, ScalarKind, Struct, Tuple, Type, Vector, scalar_of
 from optixc.ir.walk import subexpressions
 from optixc.passes.uniformity import COMMON_IN_INTERSECTION, Clone, varies
 
@@ -186,6 +186,9 @@ class LaneDialect:
         call = f"{row.cpp}({', '.join([*hidden_arguments, *lanes])})"
         return Code(f"oxrt::mapActive({self.mask}, [&]([[maybe_unused]] int lane) {{ return {call}; }})")
 
+    def carries(self, struct: Struct, field: str) -> bool:
+        return self._types.types.carries(struct, field)
+
     def helper(self, node: HelperCall, arguments: tuple[str, ...]) -> Code:
         return Code(self.helper_call(node.function, node.arguments, arguments))
 
@@ -256,12 +259,12 @@ class LaneExpressions(Expressions):
             return f"oxrt::convert<{self.lanes.type_name(scalar, Literal(0, scalar))}>({text})"
         return super().stored(text, value, target)
 
-    def _initialisers(self, types: list[Type], node: Construct, arguments: list[str]) -> list[str]:
+    def _initialisers(self, node: Construct, values: list[tuple[Type, Expr, str]]) -> list[str]:
         """Initialisers of a wide struct or array: whole values that are uniform are spread first."""
         if not self.lanes.varies(node):
-            return super()._initialisers(types, node, arguments)
+            return super()._initialisers(node, values)
         parts = []
-        for type_, argument, text in zip(types, node.arguments, arguments, strict=False):
+        for type_, argument, text in values:
             stays = self.lanes.varies(argument) or spreads_itself(argument, type_)
             parts.append(self.stored(text if stays else self.wide(argument), argument, type_))
         return parts

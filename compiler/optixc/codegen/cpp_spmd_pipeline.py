@@ -17,18 +17,19 @@ from optixc.codegen.cpp_spmd import LaneFunction
 from optixc.codegen.cpp_spmd_clones import Clones
 from optixc.codegen.cpp_spmd_expr import ATTRIBUTE_GETTER, PAYLOAD_GETTER, PAYLOAD_SETTER
 from optixc.codegen.cpp_spmd_types import WideTypes
-from optixc.codegen.cpp_types import word_count
 from optixc.codegen.helper_calls import callees_first
 from optixc.codegen.needs import EXCEPTION_FLAG_STACK_OVERFLOW, REPORT, options_of
-from optixc.codegen.program_classes import ProgramClass, callables_nest, payload_of, reachable_functions, traces_of
+from optixc.codegen.program_classes import ProgramClass, callables_nest
 from optixc.ir.intrinsic_rows import INTRINSICS
 from optixc.ir.intrinsics import State
+from optixc.ir.layout import payload_words
 from optixc.ir.nodes import CallCallable, CallIntrinsic, Function, IntrinsicCall, ParameterRole, Pipeline
 from optixc.ir.programs import ProgramKind
 from optixc.ir.types import Struct, Void
 from optixc.ir.walk import expressions, statements
 from optixc.passes.callables import CallableSignature, callables_with, signatures_called
 from optixc.passes.features import Features
+from optixc.passes.traced_programs import payload_of, reachable_functions, traces_of
 from optixc.passes.uniformity import COMMON_IN_INTERSECTION, Clone, Key
 
 _OF_RAY = frozenset(
@@ -351,7 +352,7 @@ def _reported_words(pipeline: Pipeline, program: Function) -> int:
             if isinstance(statement, CallIntrinsic) and statement.name == REPORT:
                 offered = statement.arguments[2:]
                 is_struct = len(offered) == 1 and isinstance(offered[0].type, Struct)
-                most = max(most, word_count(offered[0].type) if is_struct else len(offered))
+                most = max(most, payload_words(offered[0].type) if is_struct else len(offered))
     return most
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from optixc.codegen.cpp_types import TypeNames, field_names, is_wrapped
+from optixc.codegen.cpp_types import TypeNames, is_wrapped
 from optixc.codegen.names import Scope
 from optixc.codegen.writer import Writer
 from optixc.ir.types import Scalar, Struct, StructKind, Type, Vector, Void
@@ -51,16 +51,16 @@ class WideTypes:
     def definitions(self, writer: Writer) -> None:
         """The wide structs, each after those that it contains."""
         for struct in self._structs:
-            names = field_names(struct)
+            members = self.types.members(struct)
             with writer.block(f"struct {self._wide(struct)}", tail="};"):
                 writer.line("using IsWideStruct = void;")
                 if struct.kind is StructKind.ATTRIBUTES:
                     wrapped = any(is_wrapped(struct, field.type) for field in struct.fields)
                     writer.line(f"static constexpr bool hasWrappedFields = {'true' if wrapped else 'false'};")
-                for field in struct.fields:
-                    writer.line(f"{self.name(field.type, True)} {names[field.name]};")
-                function, structs = ("f", " s") if struct.fields else ("", "")
-                calls = " ".join(f"f(s.{names[field.name]}...);" for field in struct.fields)
+                for field, name in members:
+                    writer.line(f"{self.name(field.type, True)} {name};")
+                function, structs = ("f", " s") if members else ("", "")
+                calls = " ".join(f"f(s.{name}...);" for _, name in members)
                 head = f"static OXRT_INLINE void each(const F& {function}, S&...{structs})"
                 writer.line(f"template <class F, class... S> {head} {{ {calls} }}")
             writer.line()

@@ -7,6 +7,7 @@ sizes are wrapped into `oxrt::Word`, so that a register index is an offset of 4 
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
+from types import MappingProxyType
 from typing import assert_never
 
 from optixc.codegen.names import Scope, identifier
@@ -19,6 +20,7 @@ from optixc.ir.types import (
     Scalar,
     ScalarKind,
     Struct,
+    StructField,
     StructKind,
     Texture,
     Traversable,
@@ -44,13 +46,26 @@ def scalar_name(scalar: Scalar) -> str:
 
 
 class TypeNames:
-    """Names of types in one generated file; `struct` names are made unique against everything else in it."""
+    """Names of types in one generated file; `struct` names are made unique against everything else in it.
 
-    def __init__(self, structs: Iterable[Struct], scope: Scope) -> None:
+    `left_out`: fields that the C++ structs do not have, because nobody reads them.
+    """
+
+    def __init__(self, structs: Iterable[Struct], scope: Scope, left_out: Mapping[Struct, frozenset[str]] = MappingProxyType({})) -> None:
         self._structs: dict[Struct, str] = {struct: scope.name(struct.name) for struct in structs}
+        self._left_out = left_out
 
     def struct(self, struct: Struct) -> str:
         return self._structs[struct]
+
+    def carries(self, struct: Struct, field: str) -> bool:
+        """Whether the C++ struct has the field."""
+        return field not in self._left_out.get(struct, ())
+
+    def members(self, struct: Struct) -> list[tuple[StructField, str]]:
+        """The fields that the C++ struct has, with their names there."""
+        names = field_names(struct)
+        return [(field, names[field.name]) for field in struct.fields if self.carries(struct, field.name)]
 
     def name(self, type_: Type) -> str:
         """The C++ type of a value."""
@@ -83,9 +98,11 @@ class TypeNames:
         """Writes every struct, each after those that it contains."""
         for struct, name in self._structs.items():
             with writer.block(f"struct {name}", tail="};"):
-                members = field_names(struct)
-                for field in struct.fields:
-                    writer.line(f"{self.field(struct, field.type)} {members[field.name]};")
+                for field, name_ in self.members(struct):
+                    writer.line(f"{self.field(struct, field.type)} {name_};")
+                unread = [field.name for field in struct.fields if not self.carries(struct, field.name)]
+                if unread:
+                    writer.line(f"/* Nobody reads {', '.join(unread)}. */")
             writer.line()
 
 
@@ -114,34 +131,6 @@ def field_name(struct: Struct, name: str) -> str:
     """The C++ name of one field."""
     plain = identifier(name)
     return plain if plain == name else field_names(struct)[name]
-
-
-def payload_words(type_: Type) -> Iterator[Scalar]:
-    """What the words of a payload hold, in order: equal sequences can stand for each other."""
-    match type_:
-        case Scalar():
-            yield type_
-        case Vector():
-            yield from [type_.element] * type_.size
-        case Matrix():
-            yield from [Scalar(ScalarKind.FLOAT, 32)] * (type_.rows * type_.columns)
-        case FixedArray():
-            for _ in range(type_.size):
-                yield from payload_words(type_.element)
-        case Struct():
-            for field in type_.fields:
-                yield from payload_words(field.type)
-        case Traversable() | Texture():
-            yield Scalar(ScalarKind.UINT, 64)
-        case Array() | CoopVec() | Tuple() | Void():
-            raise AssertionError(f"{type_} has no payload words")
-        case _:
-            assert_never(type_)
-
-
-def word_count(type_: Type) -> int:
-    """32-bit words of a payload."""
-    return sum(2 if scalar.bits == 64 else 1 for scalar in payload_words(type_))
 
 
 def structs_within(type_: Type) -> Iterator[Struct]:

@@ -1,35 +1,20 @@
-"""Which programs a trace can run: one class of programs for every payload that some trace carries.
-
-A program belongs to the class of a payload if its own payload class is that one, has the same words, or if it has none and reads no
-register beyond the payload's last.
-"""
+"""Classes of programs: one for every payload that some trace carries; and how deep traces and callables nest."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import dataclass
 
-from optixc.codegen.cpp_types import payload_words, word_count
 from optixc.codegen.needs import EXCEPTION_FLAG_STACK_OVERFLOW, EXCEPTION_FLAG_TRACE_DEPTH, Needs
 from optixc.ir.nodes import (
-    Binary,
-    BinaryOp,
     CallCallable,
-    CallIntrinsic,
-    Expr,
     Function,
-    IntrinsicCall,
-    Literal,
-    ParameterRole,
     Pipeline,
     Trace,
 )
 from optixc.ir.programs import CALLABLES, ProgramKind
 from optixc.ir.types import Struct
-from optixc.ir.walk import called_helpers, expressions, statements
-
-RAY_DISABLE_CLOSESTHIT = 8
-_WORD_PREFIXES = ("get_payload_", "set_payload_")
+from optixc.ir.walk import statements
+from optixc.passes.traced_programs import accepts, may_run, reachable_functions, traces_of
 
 
 @dataclass(frozen=True)
@@ -61,14 +46,6 @@ class ProgramClass:
             (ProgramKind.MISS, self.miss),
         )
         return [(kind, functions) for kind, functions in kinds if functions or kind in self.noticed]
-
-
-def traces_of(pipeline: Pipeline) -> Iterator[tuple[Function, Trace]]:
-    """Every trace, traverse and invoke with the function that it stands in."""
-    for function in (*pipeline.programs, *pipeline.helpers):
-        for statement in statements(function.body):
-            if isinstance(statement, Trace):
-                yield function, statement
 
 
 def program_classes(pipeline: Pipeline, needs: dict[str, Needs]) -> dict[Struct | None, ProgramClass]:
@@ -110,48 +87,6 @@ def callables_nest(pipeline: Pipeline) -> bool:
     return any(isinstance(one, CallCallable) or (isinstance(one, Trace) and one.name != "traverse") for one in found)
 
 
-def payload_of(function: Function) -> Struct | None:
-    """The payload class that a program takes."""
-    for parameter in function.parameters:
-        if parameter.role is ParameterRole.PAYLOAD:
-            assert isinstance(parameter.local.type, Struct)
-            return parameter.local.type
-    return None
-
-
-def accepts(pipeline: Pipeline, program: Function, payload: Struct | None) -> bool:
-    """Whether a trace with this payload may run the program."""
-    own = payload_of(program)
-    if own is not None and (payload is None or (own != payload and tuple(payload_words(own)) != tuple(payload_words(payload)))):
-        return False
-    return _words_used(pipeline, program) <= (word_count(payload) if payload is not None else 0)
-
-
-def _words_used(pipeline: Pipeline, program: Function) -> int:
-    """One more than the highest payload register that the program or a helper addresses by number."""
-    highest = 0
-    for function in reachable_functions(pipeline, program):
-        names = [e.name for e in expressions(function.body) if isinstance(e, IntrinsicCall)]
-        names += [s.name for s in statements(function.body) if isinstance(s, CallIntrinsic)]
-        for name in names:
-            if name.startswith(_WORD_PREFIXES):
-                highest = max(highest, int(name.rsplit("_", 1)[1]) + 1)
-    return highest
-
-
-def reachable_functions(pipeline: Pipeline, start: Function) -> list[Function]:
-    """The function and every helper that it reaches."""
-    helpers = {helper.name: helper for helper in pipeline.helpers}
-    found = {start.name: start}
-    stack = [start]
-    while stack:
-        for name in called_helpers(stack.pop().body):
-            if name not in found:
-                found[name] = helpers[name]
-                stack.append(helpers[name])
-    return list(found.values())
-
-
 def trace_depth(pipeline: Pipeline) -> int | None:
     """How deep traces can nest, None if there is no limit. Callables count as reaching every program that traces."""
     tracing = {
@@ -167,7 +102,7 @@ def trace_depth(pipeline: Pipeline) -> int | None:
         for trace in traces:
             inner = 1
             for shader in shaders:
-                if not _may_run(pipeline, shader, trace):
+                if not may_run(pipeline, shader, trace):
                     continue
                 if shader.name in path:
                     return None
@@ -183,28 +118,3 @@ def trace_depth(pipeline: Pipeline) -> int | None:
         return None
     depths = [depth_below(tracing[program.name], frozenset()) for program in starts]
     return None if any(depth is None for depth in depths) else max((d for d in depths if d is not None), default=0)
-
-
-def _may_run(pipeline: Pipeline, shader: Function, trace: Trace) -> bool:
-    if not accepts(pipeline, shader, trace.payload_type):
-        return False
-    flags = known_flags(trace)
-    never = shader.kind is ProgramKind.CLOSESTHIT and flags is not None and bool(flags & RAY_DISABLE_CLOSESTHIT)
-    return not never
-
-
-def known_flags(trace: Trace) -> int | None:
-    """The ray flags of a trace if they are a constant."""
-    return constant(trace.arguments[7]) if trace.arguments else None
-
-
-def constant(expression: Expr) -> int | None:
-    """The value of an integer expression of literals and `|`, None for any other."""
-    match expression:
-        case Literal(value=int(value)):
-            return value
-        case Binary(op=BinaryOp.BIT_OR, left=left, right=right):
-            a, b = constant(left), constant(right)
-            return None if a is None or b is None else a | b
-        case _:
-            return None

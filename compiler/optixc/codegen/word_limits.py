@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import Literal as Of
 
-from optixc.codegen.cpp_types import word_count
-from optixc.codegen.program_classes import payload_of, traces_of
+from optixc.ir.layout import payload_words
 from optixc.ir.nodes import CallIntrinsic, Function, IntrinsicCall, ParameterRole, Pipeline
 from optixc.ir.types import Struct
 from optixc.ir.walk import expressions, statements
+from optixc.passes.traced_programs import payload_of, traces_of
 from optixc.source import Span
 
 SMALLEST_ATTRIBUTE_LIMIT = 2
@@ -41,10 +41,10 @@ def _payload_uses(pipeline: Pipeline) -> Iterator[tuple[int, str, Span]]:
     for program in pipeline.programs:
         payload = payload_of(program)
         if payload is not None:
-            yield word_count(payload), f"the payload {payload.name} of {program.name}", program.span
+            yield payload_words(payload), f"the payload {payload.name} of {program.name}", program.span
     for _, trace in traces_of(pipeline):
         if trace.payload_type is not None:
-            yield word_count(trace.payload_type), f"the payload of {trace.name}()", trace.span
+            yield payload_words(trace.payload_type), f"the payload of {trace.name}()", trace.span
     yield from _numbered(pipeline, ("get_payload_", "set_payload_"))
 
 
@@ -53,13 +53,13 @@ def _attribute_uses(pipeline: Pipeline) -> Iterator[tuple[int, str, Span]]:
         for parameter in program.parameters:
             if parameter.role is ParameterRole.ATTRIBUTES and isinstance(parameter.local.type, Struct):
                 struct = parameter.local.type
-                yield word_count(struct), f"the attributes {struct.name} of {program.name}", program.span
+                yield payload_words(struct), f"the attributes {struct.name} of {program.name}", program.span
     for function in _functions(pipeline):
         for statement in statements(function.body):
             if isinstance(statement, CallIntrinsic) and statement.name == "report_intersection":
                 given = statement.arguments[2:]
                 is_struct = len(given) == 1 and isinstance(given[0].type, Struct)
-                words = word_count(given[0].type) if is_struct and isinstance(given[0].type, Struct) else len(given)
+                words = payload_words(given[0].type) if is_struct and isinstance(given[0].type, Struct) else len(given)
                 yield words, "report_intersection()", statement.span
     yield from _numbered(pipeline, ("get_attribute_", "hit_object_get_attribute_"))
 

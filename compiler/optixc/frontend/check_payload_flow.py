@@ -12,25 +12,10 @@ from collections.abc import Iterator
 from optixc.frontend.checked import ExprInfo, FieldUse, FunctionInstance, HelperUse, LocalUse, TraceUse
 from optixc.frontend.context import Context
 from optixc.ir import types as t
+from optixc.ir.payload_semantics import is_passed, is_returned
 
-_READ, _WRITE = 1, 2
-_CALLER, _CLOSESTHIT, _MISS, _ANYHIT = 0, 2, 4, 6
 Lost = frozenset[tuple[str, str]]
 """Locals and fields whose words a trace has not brought back."""
-
-
-def is_passed(field: t.StructField, name: str) -> bool:
-    """Whether programs that the call runs may see the caller's value (OptiX guide, 8.4.2.1 and 14)."""
-    bits = field.semantics
-    return bits is None or bool(bits >> _CALLER & _WRITE) or (name == "invoke" and bool(bits >> _ANYHIT & _WRITE))
-
-
-def is_returned(field: t.StructField, name: str) -> bool:
-    """Whether the caller may use the field after the call."""
-    bits = field.semantics
-    if bits is None or bits >> _CALLER & _READ:
-        return True
-    return name == "traverse" and bool((bits >> _CLOSESTHIT | bits >> _MISS) & _READ)
 
 
 def check_payload_flow(c: Context, body: list[ast.stmt]) -> None:

@@ -6,7 +6,6 @@ import ast
 
 from optixc.frontend.arguments import bind_arguments, check_written
 from optixc.frontend.check_intrinsic import require_row
-from optixc.frontend.check_payload_flow import is_passed, is_returned
 from optixc.frontend.checked import Argument, DefaultArgument, ExprInfo, PayloadAccess, TraceUse
 from optixc.frontend.context import Context, describe
 from optixc.frontend.places import Root, is_payload_parameter, note_write, place_of, why_read_only
@@ -15,6 +14,7 @@ from optixc.ir import types as t
 from optixc.ir.intrinsic_rows import INTRINSICS
 from optixc.ir.intrinsics import Generic
 from optixc.ir.nodes import Local
+from optixc.ir.payload_semantics import is_passed, is_returned
 
 MAX_WORDS = 32
 _CLASS = "use an `@ox.payload` class"

@@ -7,12 +7,15 @@ void have no place in memory; asking for theirs is an error of the caller.
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cache
 
 import numpy as np
 
 from optixc.ir.types import (
+    FLOAT32,
+    UINT64,
     Array,
     CoopVec,
     FixedArray,
@@ -149,6 +152,27 @@ def payload_words(type_: Type) -> int:
             return HANDLE_SIZE // WORD_SIZE
         case Array() | CoopVec() | Tuple() | Void():
             raise AssertionError(f"{type_} cannot travel in payload words")
+
+
+def payload_scalars(type_: Type) -> Iterator[Scalar]:
+    """What the words of a payload hold, in order: equal sequences can stand for each other."""
+    match type_:
+        case Scalar():
+            yield type_
+        case Vector():
+            yield from [type_.element] * type_.size
+        case Matrix():
+            yield from [FLOAT32] * (type_.rows * type_.columns)
+        case FixedArray():
+            for _ in range(type_.size):
+                yield from payload_scalars(type_.element)
+        case Struct():
+            for field in type_.fields:
+                yield from payload_scalars(field.type)
+        case Traversable() | Texture():
+            yield UINT64
+        case Array() | CoopVec() | Tuple() | Void():
+            raise AssertionError(f"{type_} has no payload words")
 
 
 def describe(struct: Struct) -> str:

@@ -5,7 +5,8 @@ Deterministic: equal modules give equal text. It reads like the source with ever
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
+from types import MappingProxyType
 
 from optixc.ir.nodes import (
     ArrayShape,
@@ -53,7 +54,11 @@ _COMPONENTS = "xyzw"
 _INDENT = "    "
 
 
-def print_module(module: Module | Pipeline) -> str:
+Notes = Mapping[int, tuple[str, ...]]
+"""Lines of comment, by the id of the function or statement behind whose first line they stand."""
+
+
+def print_module(module: Module | Pipeline, notes: Notes = MappingProxyType({})) -> str:
     """The text of a module or pipeline, ended by a newline."""
     lines: list[str] = []
     if isinstance(module, Module):
@@ -65,7 +70,7 @@ def print_module(module: Module | Pipeline) -> str:
     for struct in module.structs:
         lines += ["", *_struct(struct)]
     for function in (*module.helpers, *module.programs):
-        lines += ["", *_function(function)]
+        lines += ["", *_function(function, notes)]
     return "\n".join(lines) + "\n"
 
 
@@ -87,7 +92,7 @@ def _local(local: Local) -> str:
     return f"{local.name}: {uniformity}{reference}{local.type}"
 
 
-def _function(function: Function) -> Iterator[str]:
+def _function(function: Function, notes: Notes) -> Iterator[str]:
     parameters = []
     for parameter in function.parameters:
         role = "" if parameter.role is ParameterRole.VALUE else f"{parameter.role.value} "
@@ -96,38 +101,40 @@ def _function(function: Function) -> Iterator[str]:
     keyword = "def" if function.kind is None else "program"
     result = "" if function.result == VOID else f" -> {function.result}"
     yield f"{keyword} {function.name}({', '.join(parameters)}){result}:"
+    yield from (f"{_INDENT}# {note}" for note in notes.get(id(function), ()))
     for local in function.locals:
         yield f"{_INDENT}local {_local(local)}"
-    yield from _body(function.body, _INDENT)
+    yield from _body(function.body, _INDENT, notes)
 
 
-def _body(body: tuple[Stmt, ...], indent: str) -> Iterator[str]:
+def _body(body: tuple[Stmt, ...], indent: str, notes: Notes) -> Iterator[str]:
     if not body:
         yield f"{indent}pass"
     for statement in body:
-        yield from _statement(statement, indent)
+        yield from _statement(statement, indent, notes)
 
 
-def _statement(statement: Stmt, indent: str) -> Iterator[str]:
+def _statement(statement: Stmt, indent: str, notes: Notes) -> Iterator[str]:
     match statement:
         case If():
             yield f"{indent}if {_expression(statement.condition)}:"
-            yield from _body(statement.then_body, indent + _INDENT)
+            yield from _body(statement.then_body, indent + _INDENT, notes)
             if statement.else_body:
                 yield f"{indent}else:"
-                yield from _body(statement.else_body, indent + _INDENT)
+                yield from _body(statement.else_body, indent + _INDENT, notes)
         case While():
             yield f"{indent}while{'' if statement.bounded else ' unbounded'} {_expression(statement.condition)}:"
             if statement.condition_body:
                 yield f"{indent}{_INDENT}before condition:"
-                yield from _body(statement.condition_body, indent + 2 * _INDENT)
-            yield from _body(statement.body, indent + _INDENT)
+                yield from _body(statement.condition_body, indent + 2 * _INDENT, notes)
+            yield from _body(statement.body, indent + _INDENT, notes)
         case ForRange():
             bounds = ", ".join(_expression(bound) for bound in (statement.start, statement.stop, statement.step))
             yield f"{indent}for {statement.target.name} in range({bounds}):"
-            yield from _body(statement.body, indent + _INDENT)
+            yield from _body(statement.body, indent + _INDENT, notes)
         case _:
             yield indent + _simple_statement(statement)
+            yield from (f"{indent}# {note}" for note in notes.get(id(statement), ()))
 
 
 def _simple_statement(

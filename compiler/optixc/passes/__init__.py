@@ -7,6 +7,7 @@ from collections.abc import Callable
 from optixc.ir.nodes import Pipeline
 from optixc.passes.bound_loops import bound_loops
 from optixc.passes.checks import explain_assertions, trap_nans
+from optixc.passes.drop_dead_words import drop_dead_words
 from optixc.passes.fold_constants import fold_constants
 from optixc.passes.propagate import propagate_constants
 from optixc.passes.remove_unused import remove_unused
@@ -18,6 +19,7 @@ PASSES: tuple[tuple[str, Callable[[Pipeline], Pipeline]], ...] = (
     ("propagate_constants", propagate_constants),
     ("explain_assertions", explain_assertions),
     ("trap_nans", trap_nans),
+    ("drop_dead_words", drop_dead_words),
     ("remove_unused", remove_unused),
     ("bound_loops", bound_loops),
 )

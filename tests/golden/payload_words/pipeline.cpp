@@ -77,10 +77,9 @@ void raygen_main(OxrtThread& thread) {
 }
 
 #line 42 "shader.py"
-void closesthit_mixed(oxrt::Ray& trace, Mixed& mixed) {
+void closesthit_mixed(Mixed& mixed) {
     mixed.hit = true;
     mixed.where = uint64_t(mixed.where) + UINT64_C(4294967296);
-    mixed.uv = oxrt::getTriangleBarycentrics(trace);
 }
 
 #line 49 "shader.py"
@@ -98,10 +97,10 @@ void miss_words(oxrt::Ray& trace) {
 void miss_nothing() {
 }
 
-#line 102 "pipeline.cpp"
-void MixedPrograms::closestHit(oxrt::Ray& trace, Payload& payload, const OxrtRecordHeader& record) {
+#line 101 "pipeline.cpp"
+void MixedPrograms::closestHit(oxrt::Ray&, Payload& payload, const OxrtRecordHeader& record) {
     switch (record.programs[oxrt::SLOT_CLOSESTHIT]) {
-        case number::closesthit_mixed: closesthit_mixed(trace, payload); break;
+        case number::closesthit_mixed: closesthit_mixed(payload); break;
         case number::closesthit_alike: closesthit_alike(oxrt::PayloadAs<Alike, Payload>(payload)); break;
         default: break;
     }

@@ -145,12 +145,9 @@ void raygen_main_lanes([[maybe_unused]] Lanes& thread, [[maybe_unused]] Mask mas
 }
 
 #line 42 "shader.py"
-void closesthit_mixed_lanes([[maybe_unused]] Rays& trace, [[maybe_unused]] Mask mask, Wide<Mixed>& mixed) {
-    [[maybe_unused]] Lanes& thread = *trace.thread;
-#line 43 "shader.py"
+void closesthit_mixed_lanes([[maybe_unused]] Lanes& thread, [[maybe_unused]] Mask mask, Wide<Mixed>& mixed) {
     oxrt::assign(mask, mixed.hit, true);
     oxrt::assign(mask, mixed.where, Wide<uint64_t>(mixed.where) + UINT64_C(4294967296));
-    oxrt::assign(mask, mixed.uv, oxrt::getTriangleBarycentrics(trace));
 }
 
 #line 49 "shader.py"
@@ -170,11 +167,11 @@ void miss_words_lanes([[maybe_unused]] Rays& trace, [[maybe_unused]] Mask mask) 
 void miss_nothing_lanes([[maybe_unused]] Lanes& thread, [[maybe_unused]] Mask mask) {
 }
 
-#line 174 "pipeline.cpp"
+#line 171 "pipeline.cpp"
 void MixedProgramsLanes::closestHit(Rays& trace, Mask mask, Payload& payload) {
     const Wide<int32_t> program = oxrt::recordPrograms(trace.records, mask, oxrt::SLOT_CLOSESTHIT);
     if (const Mask own = mask & (program == int32_t(number::closesthit_mixed)); oxrt::any(own))
-        closesthit_mixed_lanes(trace, own, payload);
+        closesthit_mixed_lanes(*trace.thread, own, payload);
     if (const Mask own = mask & (program == int32_t(number::closesthit_alike)); oxrt::any(own))
         closesthit_alike_lanes(*trace.thread, own, oxrt::WidePayloadAs<Alike, Mixed, LANES>(payload));
 }

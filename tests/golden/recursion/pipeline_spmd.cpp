@@ -29,7 +29,7 @@ struct Mirror {
 
 struct Radiance {
     oxrt::float3 color;
-    int32_t depth;
+    /* Nobody reads depth. */
 };
 
 struct Light {
@@ -64,8 +64,7 @@ struct MirrorWide {
 struct RadianceWide {
     using IsWideStruct = void;
     Wide<oxrt::float3> color;
-    Wide<int32_t> depth;
-    template <class F, class... S> static OXRT_INLINE void each(const F& f, S&... s) { f(s.color...); f(s.depth...); }
+    template <class F, class... S> static OXRT_INLINE void each(const F& f, S&... s) { f(s.color...); }
 };
 
 struct LightWide {
@@ -121,7 +120,7 @@ void raygen_image_lanes([[maybe_unused]] Lanes& thread, [[maybe_unused]] Mask ma
     const Params& params = oxrt::launchParams<Params>(thread);
 #line 45 "shader.py"
     Wide<oxrt::uint3> i = oxrt::getLaunchIndex(thread);
-    Wide<Radiance> ray = oxrt::spread<16>(Radiance{oxrt::float3(0.0f), 0});
+    Wide<Radiance> ray = oxrt::spread<16>(Radiance{oxrt::float3(0.0f)});
     oxrt::trace<RadianceProgramsLanes>(thread, mask, params.scene, Wide<oxrt::float3>(oxrt::convert<float>(i.x), 0.0f, 0.0f),
             oxrt::float3(0.0f, 0.0f, 1.0f), 0.0f, __builtin_inff(), 0.0f, 255u, oxrt::KnownFlags<0>(), 0u, 1u, 0u, ray);
 #line 48 "shader.py"
@@ -155,7 +154,7 @@ void closesthit_mirror_lanes([[maybe_unused]] Rays& trace, [[maybe_unused]] Mask
     const Params& params = oxrt::launchParams<Params>(thread);
 #line 59 "shader.py"
     Wide<oxrt::float3> point = oxrt::getWorldRayOrigin(trace) + oxrt::getRayTmax(trace) * oxrt::getWorldRayDirection(trace);
-    Wide<Radiance> deeper = Wide<Radiance>{oxrt::float3(0.0f), ray.depth + 1};
+    Wide<Radiance> deeper = oxrt::spread<16>(Radiance{oxrt::float3(0.0f)});
     oxrt::trace<RadianceProgramsLanes>(thread, mask, params.scene, point, -oxrt::getWorldRayDirection(trace), 0.001f, __builtin_inff(),
             0.0f, 255u, oxrt::KnownFlags<0>(), 0u, 1u, 0u, deeper);
 #line 62 "shader.py"
@@ -172,7 +171,7 @@ void miss_visible_lanes([[maybe_unused]] Lanes& thread, [[maybe_unused]] Mask ma
     oxrt::assign(mask, light.visible, true);
 }
 
-#line 176 "pipeline.cpp"
+#line 175 "pipeline.cpp"
 void RadianceProgramsLanes::closestHit(Rays& trace, Mask mask, Payload& payload) {
     const Wide<int32_t> program = oxrt::recordPrograms(trace.records, mask, oxrt::SLOT_CLOSESTHIT);
     if (const Mask own = mask & (program == int32_t(number::closesthit_matte)); oxrt::any(own))
