@@ -33,9 +33,6 @@ from optixc.ir.types import FixedArray, Struct
 from optixc.passes.traced_programs import known_flags
 from optixc.passes.uniformity import Clone
 
-HIT_OBJECT_SETTERS = frozenset({"make_nop_hit_object", "hit_object_set_sbt_record_index", "reorder"})
-"""What changes hit objects of all lanes at once; makers do it lane by lane."""
-
 _HANDLE_ARGUMENT, _FLAGS_ARGUMENT = 0, 7
 
 
@@ -151,14 +148,9 @@ class LaneCalls:
             return f"oxrt::setPayloadWord({self._names.trace}, {self._mask}, {index}, {arguments[0]})", False
         if row.effect is Effect.ENDS_PROGRAM:
             return f"{row.cpp}({self._names.trace}, {self._mask})", False
-        arguments = timed(row, arguments, self._options)
-        if statement.name in HIT_OBJECT_SETTERS:
-            wide = [self._expressions.wide(argument) for argument in statement.arguments]
-            return f"{row.cpp}({', '.join([self._names.hit_object, self._mask, *wide])})", False
         if row.state is State.HIT_OBJECT:
-            lanes = ", ".join(["one", *(f"oxrt::inLane({argument}, lane)" for argument in arguments)])
-            making = f"[&](oxrt::HitObject& one, [[maybe_unused]] int lane) {{ {row.cpp}({lanes}); }}"
-            return f"oxrt::makeHitObjects({self._names.hit_object}, {self._mask}, {making})", False
+            wide = timed(row, [self._expressions.wide(argument) for argument in statement.arguments], self._options)
+            return f"{row.cpp}({', '.join([self._names.hit_object, self._mask, *wide])})", False
         assert row.state in (State.NONE, State.THREAD), f"{statement.name} has no form over lanes"
         return self._lane_by_lane(statement, row)
 

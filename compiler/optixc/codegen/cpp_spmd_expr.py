@@ -55,17 +55,6 @@ _HIT_LANES = frozenset(
 """Getters of the ray and the hit that lanes_ray.h has; the others run lane by lane."""
 
 
-_HIT_OBJECT_LANES = frozenset(
-    """is_hit is_miss is_nop get_sbt_record_index get_sbt_data get_world_ray_origin get_world_ray_direction get_ray_tmin get_ray_tmax
-    get_ray_time get_ray_flags get_cluster_id get_primitive_index get_sbt_gas_index get_instance_id get_instance_index get_hit_kind
-    get_gas_traversable_handle get_transform_list_size get_triangle_barycentrics get_curve_parameter get_triangle_vertex_data
-    transform_point_from_world_to_object_space transform_point_from_object_to_world_space transform_vector_from_world_to_object_space
-    transform_vector_from_object_to_world_space transform_normal_from_world_to_object_space
-    transform_normal_from_object_to_world_space""".split()
-) | {f"{ATTRIBUTE_GETTER}{i}" for i in range(8)}
-"""Getters of the outgoing hit object that lanes_hit_object.h has, without their prefix; the others run lane by lane."""
-
-
 class LaneDialect:
     """Answers what `Expressions` asks, for one clone of a function."""
 
@@ -171,14 +160,10 @@ class LaneDialect:
         if node.name in _THREAD_LANES or node.name in _HIT_LANES:
             hidden = self._names.trace if row.state is State.RAY else self._names.thread
             return Code(f"{row.cpp}({', '.join([hidden, *arguments])})")
-        if row.state is State.HIT_OBJECT and node.name.removeprefix("hit_object_") in _HIT_OBJECT_LANES:
+        if row.state is State.HIT_OBJECT:
             template = f"<{self._types.types.name(node.type)}>" if node.name == HIT_OBJECT_DATA else ""
             return Code(f"{row.cpp}{template}({', '.join([self._names.hit_object, self.mask, *arguments])})")
         lanes = [f"oxrt::inLane({argument}, lane)" for argument in arguments]
-        if row.state is State.HIT_OBJECT:
-            call = f"{row.cpp}({', '.join(['one', *lanes])})"
-            reading = f"[&](const oxrt::HitObject& one, [[maybe_unused]] int lane) {{ return {call}; }}"
-            return Code(f"oxrt::mapHitObjects({self._names.hit_object}, {self.mask}, {reading})")
         if row.state is State.RAY:
             call = f"{row.cpp}({', '.join(['one', *lanes])})"
             return Code(f"oxrt::mapHits({self._names.trace}, [&](const oxrt::Ray& one, [[maybe_unused]] int lane) {{ return {call}; }})")

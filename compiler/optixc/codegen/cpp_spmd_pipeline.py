@@ -63,7 +63,7 @@ class SpmdFile(PipelineFile):
     def text(self) -> str:
         order = self._functions_over_lanes()
         self._head()
-        self._writer.line(f"#include <oxrt/{'lanes_hit_object' if self._features.has('hit objects') else 'lanes_trace'}.h>")
+        self._writer.line(f"#include <oxrt/{'lanes_make_hit' if self._features.has('hit objects') else 'lanes_trace'}.h>")
         if self._features.has("cooperative vectors"):
             self._writer.line("#include <oxrt/lanes_coop_vec.h>")
         self._writer.line()

@@ -8,6 +8,7 @@
 
 #include <oxrt/device_curves.h>
 #include <oxrt/device_trace.h>
+#include <oxrt/hit_getters.h>
 
 namespace oxrt {
 inline namespace OXRT_ISA {
@@ -112,36 +113,8 @@ OXRT_OF_RAY(uint32_t, RayFlags)
 /* Of a hit only. */
 #define OXRT_OF_HIT(RESULT, NAME) \
     OXRT_INLINE RESULT hitObjectGet##NAME(const HitObject& object) { return hitObjectIsHit(object) ? get##NAME(object.ray) : RESULT{}; }
-OXRT_OF_HIT(uint64_t, GASTraversableHandle)
-OXRT_OF_HIT(uint32_t, TransformListSize)
-OXRT_OF_HIT(uint32_t, PrimitiveIndex)
-OXRT_OF_HIT(uint32_t, SbtGASIndex)
-OXRT_OF_HIT(uint32_t, InstanceId)
-OXRT_OF_HIT(uint32_t, InstanceIndex)
-OXRT_OF_HIT(uint32_t, HitKind)
-OXRT_OF_HIT(float2, TriangleBarycentrics)
-OXRT_OF_HIT(float, CurveParameter)
-OXRT_OF_HIT(TriangleVertices, TriangleVertexData)
-OXRT_OF_HIT(float4, SphereData)
-OXRT_OF_HIT(float2, RibbonParameters)
-OXRT_OF_HIT(ControlPoints<2>::Type, LinearCurveVertexData)
-OXRT_OF_HIT(ControlPoints<3>::Type, QuadraticBSplineVertexData)
-OXRT_OF_HIT(ControlPoints<3>::Type, QuadraticBSplineRocapsVertexData)
-OXRT_OF_HIT(ControlPoints<4>::Type, CubicBSplineVertexData)
-OXRT_OF_HIT(ControlPoints<4>::Type, CubicBSplineRocapsVertexData)
-OXRT_OF_HIT(ControlPoints<4>::Type, CatmullRomVertexData)
-OXRT_OF_HIT(ControlPoints<4>::Type, CatmullRomRocapsVertexData)
-OXRT_OF_HIT(ControlPoints<4>::Type, CubicBezierVertexData)
-OXRT_OF_HIT(ControlPoints<4>::Type, CubicBezierRocapsVertexData)
-OXRT_OF_HIT(ControlPoints<3>::Type, RibbonVertexData)
-OXRT_OF_HIT(uint32_t, Attribute_0)
-OXRT_OF_HIT(uint32_t, Attribute_1)
-OXRT_OF_HIT(uint32_t, Attribute_2)
-OXRT_OF_HIT(uint32_t, Attribute_3)
-OXRT_OF_HIT(uint32_t, Attribute_4)
-OXRT_OF_HIT(uint32_t, Attribute_5)
-OXRT_OF_HIT(uint32_t, Attribute_6)
-OXRT_OF_HIT(uint32_t, Attribute_7)
+OXRT_HIT_GETTERS(OXRT_OF_HIT)
+OXRT_SINGLE_HIT_GETTERS(OXRT_OF_HIT)
 #undef OXRT_OF_HIT
 
 OXRT_INLINE float3 hitObjectGetRibbonNormal(const HitObject& object, const float2& parameters) {
@@ -173,12 +146,7 @@ OXRT_INLINE uint64_t hitObjectGetTransformListHandle(const HitObject& object, ui
     OXRT_INLINE float3 hitObjectTransform##NAME(const HitObject& object, const float3& value) { \
         return hitObjectIsHit(object) ? transform##NAME(object.ray, value) : value;             \
     }
-OXRT_TRANSFORM(PointFromWorldToObjectSpace)
-OXRT_TRANSFORM(PointFromObjectToWorldSpace)
-OXRT_TRANSFORM(VectorFromWorldToObjectSpace)
-OXRT_TRANSFORM(VectorFromObjectToWorldSpace)
-OXRT_TRANSFORM(NormalFromWorldToObjectSpace)
-OXRT_TRANSFORM(NormalFromObjectToWorldSpace)
+OXRT_HIT_TRANSFORMS(OXRT_TRANSFORM)
 #undef OXRT_TRANSFORM
 
 }  // namespace OXRT_ISA

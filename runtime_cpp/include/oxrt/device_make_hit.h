@@ -136,12 +136,14 @@ OXRT_INLINE void beginHit(HitObject& object, uint64_t handle, const float3& orig
     ray.sbtStride = 1;
 }
 
+inline constexpr const char* NO_SUCH_HIT = "make_hit_object: the handle, transforms and indices lead to no primitive";
+
 /* Makes the object a hit if what was said of it is true. */
 OXRT_INLINE void endHit(HitObject& object, bool isThere, Place place) {
     if (isThere)
         object.kind = HitObject::Kind::Hit;
     else if (object.thread->launch->validation)
-        fault(*object.thread, OXRT_FAULT_DATA_ACCESS, "make_hit_object: the handle, transforms and indices lead to no primitive", place);
+        fault(*object.thread, OXRT_FAULT_DATA_ACCESS, NO_SUCH_HIT, place);
 }
 
 /* `transforms`: the first `count` handles of the transform list, outermost first. */

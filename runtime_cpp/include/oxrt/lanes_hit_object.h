@@ -310,25 +310,23 @@ template <int W, class T, class F> OXRT_INLINE T ofHits(HitObjectLanes<W>& objec
     template <int W> __attribute__((noinline)) Wide<TYPE, W> hitObjectGet##NAME(HitObjectLanes<W>& object, Lanes<bool, W> mask) {   \
         return ofHits(object, mask, spread<W>(TYPE{}), [](const RayLanes<W>& ray) { return get##NAME(ray); });                      \
     }
-OXRT_OF_HIT(uint32_t, PrimitiveIndex)
-OXRT_OF_HIT(uint32_t, SbtGASIndex)
-OXRT_OF_HIT(uint32_t, InstanceId)
-OXRT_OF_HIT(uint32_t, InstanceIndex)
-OXRT_OF_HIT(uint32_t, HitKind)
-OXRT_OF_HIT(uint64_t, GASTraversableHandle)
-OXRT_OF_HIT(uint32_t, TransformListSize)
-OXRT_OF_HIT(float2, TriangleBarycentrics)
-OXRT_OF_HIT(float, CurveParameter)
-OXRT_OF_HIT(TriangleVertices, TriangleVertexData)
-OXRT_OF_HIT(uint32_t, Attribute_0)
-OXRT_OF_HIT(uint32_t, Attribute_1)
-OXRT_OF_HIT(uint32_t, Attribute_2)
-OXRT_OF_HIT(uint32_t, Attribute_3)
-OXRT_OF_HIT(uint32_t, Attribute_4)
-OXRT_OF_HIT(uint32_t, Attribute_5)
-OXRT_OF_HIT(uint32_t, Attribute_6)
-OXRT_OF_HIT(uint32_t, Attribute_7)
+OXRT_HIT_GETTERS(OXRT_OF_HIT)
 #undef OXRT_OF_HIT
+
+#define OXRT_OF_SINGLE_HIT(TYPE, NAME)                                                                                          \
+    template <int W> Wide<TYPE, W> hitObjectGet##NAME(HitObjectLanes<W>& object, Lanes<bool, W> mask) {                         \
+        return mapHitObjects(object, mask, [](const HitObject& one, int) { return hitObjectGet##NAME(one); });                  \
+    }
+OXRT_SINGLE_HIT_GETTERS(OXRT_OF_SINGLE_HIT)
+OXRT_OF_SINGLE_HIT(float3x4, ObjectToWorldTransformMatrix)
+OXRT_OF_SINGLE_HIT(float3x4, WorldToObjectTransformMatrix)
+#undef OXRT_OF_SINGLE_HIT
+template <int W> Wide<float3, W> hitObjectGetRibbonNormal(HitObjectLanes<W>& object, Lanes<bool, W> mask, const Wide<float2, W>& parameters) {
+    return mapHitObjects(object, mask, [&](const HitObject& one, int lane) { return hitObjectGetRibbonNormal(one, inLane(parameters, lane)); });
+}
+template <int W> Lanes<uint64_t, W> hitObjectGetTransformListHandle(HitObjectLanes<W>& object, Lanes<bool, W> mask, Wide<uint32_t, W> index) {
+    return mapHitObjects(object, mask, [&](const HitObject& one, int lane) { return hitObjectGetTransformListHandle(one, index[lane]); });
+}
 
 #define OXRT_LANES_TRANSFORM(NAME)                                                                                                     \
     template <int W, class V>                                                                                                          \
@@ -336,12 +334,7 @@ OXRT_OF_HIT(uint32_t, Attribute_7)
         const Wide<float3, W> wide(value);                                                                                             \
         return ofHits(object, mask, wide, [&](const RayLanes<W>& ray) { return transform##NAME(ray, wide); });                         \
     }
-OXRT_LANES_TRANSFORM(PointFromWorldToObjectSpace)
-OXRT_LANES_TRANSFORM(PointFromObjectToWorldSpace)
-OXRT_LANES_TRANSFORM(VectorFromWorldToObjectSpace)
-OXRT_LANES_TRANSFORM(VectorFromObjectToWorldSpace)
-OXRT_LANES_TRANSFORM(NormalFromWorldToObjectSpace)
-OXRT_LANES_TRANSFORM(NormalFromObjectToWorldSpace)
+OXRT_HIT_TRANSFORMS(OXRT_LANES_TRANSFORM)
 #undef OXRT_LANES_TRANSFORM
 
 /* The data of the records that invoke would use; zero where there is none. */

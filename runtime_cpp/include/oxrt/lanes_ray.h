@@ -288,13 +288,7 @@ template <class F, int W> __attribute__((noinline)) auto mapHits(RayLanes<W> ray
 #define OXRT_MAPPED_GETTER(name) \
     template <int W> auto name(const RayLanes<W>& ray) { return mapHits(ray, [](const Ray& one, int) { return name(one); }); }
 OXRT_MAPPED_GETTER(getGASTraversableHandle)
-OXRT_MAPPED_GETTER(getHitKind)
 OXRT_MAPPED_GETTER(getPrimitiveType)
-OXRT_MAPPED_GETTER(isTriangleHit)
-OXRT_MAPPED_GETTER(isTriangleFrontFaceHit)
-OXRT_MAPPED_GETTER(isTriangleBackFaceHit)
-OXRT_MAPPED_GETTER(isBackFaceHit)
-OXRT_MAPPED_GETTER(isFrontFaceHit)
 OXRT_MAPPED_GETTER(getTransformListSize)
 OXRT_MAPPED_GETTER(getObjectToWorldTransformMatrix)
 OXRT_MAPPED_GETTER(getWorldToObjectTransformMatrix)

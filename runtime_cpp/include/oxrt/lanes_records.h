@@ -2,7 +2,7 @@
 #ifndef OXRT_LANES_RECORDS_H
 #define OXRT_LANES_RECORDS_H
 
-#include <oxrt/lanes_ray.h>
+#include <oxrt/lanes_hit_kind.h>
 
 namespace oxrt {
 inline namespace OXRT_ISA {

@@ -6,7 +6,7 @@
 #include <oxrt/device.h>
 #include <oxrt/device_make_hit.h>
 
-#include <oxrt/lanes_hit_object.h>
+#include <oxrt/lanes_make_hit.h>
 
 namespace {
 
