@@ -144,7 +144,8 @@ def test_a_call_that_writes_stays_without_its_target() -> None:
 
 def test_a_bound_value_removes_the_trace_and_all_that_it_needed() -> None:
     shadow = local("shadow", RADIANCE)
-    body = (assign(shadow, n.Construct(RADIANCE, (n.Literal((0.0, 0.0, 0.0), t.FLOAT3),))), trace(ref(shadow)), n.Return(number(1.0), at(1)))
+    black = n.Construct(RADIANCE, (n.Literal((0.0, 0.0, 0.0), t.FLOAT3),))
+    body = (assign(shadow, black), trace(ref(shadow)), n.Return(number(1.0), at(1)))
     tracing = function("lit", body, locals_=(shadow,), result=t.FLOAT32)
     x = local("x", t.FLOAT32)
     use = n.CallIntrinsic(None, "set_payload_0", (call("float_as_uint", t.UINT32, ref(x)),), at(1))
