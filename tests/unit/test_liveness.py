@@ -63,6 +63,12 @@ def brightness(ray: Ray) -> float:
 
 
 @ox.device
+def aside(x: float) -> float:
+    params.out[2] = x
+    return x
+
+
+@ox.device
 def whole(ray: Ray) -> Ray:
     return ox.copy(ray)
 
@@ -89,6 +95,7 @@ CASES = {
     "kept from a word for another": ("params.out[0] = ray.a", "ray.a = ray.inner.y", [0, 7], [0]),
     "kept for nobody": ("params.out[0] = ray.a", "ray.wide = uint64(ray.last)", [0], [0]),
     "by a helper": ("params.out[0] = brightness(ray)", "brighten(ray, ray.a)", [0, 3, 4], [3, 4]),
+    "around a helper of something else": ("aside(2.0)\n    params.out[0] = ray.a", "ray.a = 1.0\n    aside(3.0)", [0], [0]),
     "written before it is read": ("ray.a = 1.0\n    params.out[0] = ray.a", "pass", [], []),
     "in one branch": ("if ray.last > 3:\n        ray.a = 1.0\n    params.out[0] = ray.a", "pass", [0, 8], [0, 8]),
     "in a loop": ("for k in range(3):\n        params.out[k] = ray.a\n        ray.a = ray.inner.x", "pass", [0, 6], [0, 6]),

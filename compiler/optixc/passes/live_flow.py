@@ -115,7 +115,7 @@ class Flow:
         """
         self._exit, self._result = at_end, result
         if self._is_idle:
-            return EMPTY
+            return at_end
         return self._block(self._function.body, at_end)
 
     def handed_on(self) -> Iterable[tuple[str, State]]:
