@@ -24,6 +24,7 @@ std::span<const OxrtInstance> instancesOf(const OxrtBuildInput& input)
     if (!input.instances && input.numPrimitives != 0)
         fail(OXRT_ERROR_INVALID_VALUE, "input 0: instances is NULL but numPrimitives is %llu",
              static_cast<unsigned long long>(input.numPrimitives));
+    checkAligned(input.instances, alignof(OxrtInstance), "input 0: instances");
     return {input.instances, input.numPrimitives};
 }
 
@@ -33,7 +34,7 @@ std::shared_ptr<Accel> Accel::make(std::shared_ptr<Context> context, const OxrtA
                                    std::span<const OxrtBuildInput> inputs)
 {
     checkBuildOptions(options);
-    checkBuildInputs(inputs, normalForm(options.motion));
+    checkBuildInputs(*context, inputs, normalForm(options.motion));
     auto accel = std::make_shared<Accel>(context, options);
     accel->build(inputs);
     context->addTraversable(accel->handle(), accel);
@@ -254,7 +255,7 @@ void Accel::checkSameShape(std::span<const OxrtBuildInput> inputs) const
 void Accel::update(std::span<const OxrtBuildInput> inputs)
 {
     if (!updatable()) fail(OXRT_ERROR_INVALID_VALUE, "the accel was built without ALLOW_UPDATE; build it with that flag to update it");
-    checkBuildInputs(inputs, motion);
+    checkBuildInputs(*context, inputs, motion);
     checkSameShape(inputs);
 
     context->beginChange("updating an accel");

@@ -50,7 +50,7 @@ void checkKeys(const OxrtBuildInput& input, unsigned number, const OxrtMotionOpt
 
 } // namespace
 
-void checkBuildInputs(std::span<const OxrtBuildInput> inputs, const OxrtMotionOptions& motion)
+void checkBuildInputs(const Context& context, std::span<const OxrtBuildInput> inputs, const OxrtMotionOptions& motion)
 {
     if (inputs.empty()) fail(OXRT_ERROR_INVALID_VALUE, "the list of build inputs is empty; give at least one");
     if (!inputs.data()) fail(OXRT_ERROR_INVALID_VALUE, "the build inputs are NULL but there are %zu", inputs.size());
@@ -65,7 +65,7 @@ void checkBuildInputs(std::span<const OxrtBuildInput> inputs, const OxrtMotionOp
             fail(OXRT_ERROR_INVALID_VALUE, "input %u has curve type 0x%x but input 0 has 0x%x; make one accel per type and instance them", i,
                  inputs[i].curveType, inputs[0].curveType);
         checkKeys(inputs[i], i, motion);
-        Geometry::check(inputs[i], i);
+        Geometry::check(context, inputs[i], i);
         primitives += inputs[i].numPrimitives;
         records += inputs[i].numSbtRecords;
     }

@@ -7,8 +7,10 @@
 
 namespace oxrt {
 
+class Context;
+
 // Both throw Failure. `motion` is what holds for all inputs: one key if static.
 void checkBuildOptions(const OxrtAccelBuildOptions& options);
-void checkBuildInputs(std::span<const OxrtBuildInput> inputs, const OxrtMotionOptions& motion);
+void checkBuildInputs(const Context& context, std::span<const OxrtBuildInput> inputs, const OxrtMotionOptions& motion);
 
 } // namespace oxrt

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cstdarg>
+#include <cstdint>
 #include <cstdio>
 #include <cstring>
 
@@ -74,6 +75,12 @@ std::string formatText(const char* format, ...)
     std::string text = formatList(format, arguments);
     va_end(arguments);
     return text;
+}
+
+void checkAligned(const void* pointer, std::size_t alignment, const char* name)
+{
+    if (reinterpret_cast<std::uintptr_t>(pointer) % alignment != 0)
+        fail(OXRT_ERROR_INVALID_VALUE, "%s is not aligned to %zu bytes", name, alignment);
 }
 
 void setLastErrorMessage(const char* text) noexcept

@@ -4,6 +4,7 @@
 
 #include "oxrt/oxrt.h"
 
+#include <cstddef>
 #include <exception>
 #include <new>
 #include <string>
@@ -24,6 +25,9 @@ public:
 [[noreturn]] void fail(OxrtResult result, const char* format, ...) __attribute__((format(printf, 2, 3)));
 
 std::string formatText(const char* format, ...) __attribute__((format(printf, 1, 2)));
+
+// For memory that is read as it lies; NULL is somebody else's affair.
+void checkAligned(const void* pointer, std::size_t alignment, const char* name);
 
 void setLastErrorMessage(const char* text) noexcept;
 

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <utility>
 
 namespace oxrt {
 
@@ -17,6 +18,15 @@ constexpr std::uint32_t maxRecords = 1u << 24;
 constexpr std::uint32_t knownGeometryFlags = 7;
 constexpr std::uint32_t flagDisableAnyHit = 1;
 constexpr std::uint32_t manyCustomPrimitives = 256; // from here on bundled packets are traversed as one
+
+void checkArrays(const OxrtBuildInput& input, unsigned number)
+{
+    const std::pair<const void*, const char*> arrays[] = {{input.flags, "flags"},
+                                                          {input.sbtIndexOffsets, "sbtIndexOffsets"},
+                                                          {input.indices, "indices"},
+                                                          {input.preTransform, "preTransform"}};
+    for (const auto& [array, name] : arrays) checkAligned(array, alignof(std::uint32_t), formatText("input %u: %s", number, name).c_str());
+}
 
 void checkRecords(const OxrtBuildInput& input, unsigned number)
 {
@@ -49,7 +59,10 @@ void checkKeys(const float* const* keys, const OxrtBuildInput& input, unsigned n
         fail(OXRT_ERROR_INVALID_VALUE, "input %u: %s is NULL but numPrimitives is %llu", number, name,
              static_cast<unsigned long long>(input.numPrimitives));
     for (std::uint32_t key = 0; key < std::max(1u, input.numKeys); ++key)
-        if (!keys[key]) fail(OXRT_ERROR_INVALID_VALUE, "input %u: %s[%u] is NULL", number, name, key);
+        if (!keys[key])
+            fail(OXRT_ERROR_INVALID_VALUE, "input %u: %s[%u] is NULL", number, name, key);
+        else
+            checkAligned(keys[key], alignof(float), formatText("input %u: %s[%u]", number, name, key).c_str());
 }
 
 namespace {
@@ -102,14 +115,15 @@ void occludeNothing(const RTCOccludedFunctionNArguments*)
 
 } // namespace
 
-void Geometry::check(const OxrtBuildInput& input, unsigned number)
+void Geometry::check(const Context& context, const OxrtBuildInput& input, unsigned number)
 {
+    checkArrays(input, number);
     switch (input.type) {
     case OXRT_BUILD_INPUT_TRIANGLES:
         checkCounts(input, number);
         checkRecords(input, number);
         checkTriangles(input, number);
-        if (input.opacityMicromap) checkMicromaps(*input.opacityMicromap, input.numPrimitives, number);
+        if (input.opacityMicromap) checkMicromaps(*input.opacityMicromap, context, input.numPrimitives, number);
         break;
     case OXRT_BUILD_INPUT_CUSTOM_PRIMITIVES:
         checkCounts(input, number);

@@ -20,7 +20,7 @@ RTCBounds boundsOfBox(const float* box);
 class Geometry {
 public:
     // Throws Failure for input that cannot be built; `number` is the input's place in the caller's list.
-    static void check(const OxrtBuildInput& input, unsigned number);
+    static void check(const Context& context, const OxrtBuildInput& input, unsigned number);
 
     // `input` passed check().
     Geometry(const OxrtBuildInput& input, std::uint32_t recordBase);

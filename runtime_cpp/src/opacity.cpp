@@ -203,6 +203,8 @@ MicromapArray::MicromapArray(std::shared_ptr<Context> owner, const OxrtOpacityMi
 {
     if (options.flags & ~knownArrayFlags || options.flags == knownArrayFlags)
         fail(OXRT_ERROR_INVALID_VALUE, "opacity micromap array: flags 0x%x; give one of OpacityMicromapFlags", options.flags);
+    checkAligned(options.descs, alignof(OxrtOpacityMicromapDesc), "opacity micromap array: descs");
+    checkAligned(options.histogram, alignof(OxrtOpacityMicromapCount), "opacity micromap array: histogram");
     Histogram found;
     for (std::uint32_t i = 0; i < options.numDescs; ++i) {
         checkDesc(options.descs[i], i, options.dataSize);
@@ -225,8 +227,10 @@ MicromapArray::MicromapArray(std::shared_ptr<Context> owner, const OxrtOpacityMi
     }
 }
 
-void checkMicromaps(const OxrtOpacityMicromapInput& input, std::uint64_t triangles, unsigned number)
+void checkMicromaps(const OxrtOpacityMicromapInput& input, const Context& context, std::uint64_t triangles, unsigned number)
 {
+    checkAligned(input.indices, alignof(std::int32_t), formatText("input %u: micromap indices", number).c_str());
+    checkAligned(input.usageCounts, alignof(OxrtOpacityMicromapCount), formatText("input %u: micromap usageCounts", number).c_str());
     const bool isIndexed = input.indexingMode == OXRT_OPACITY_MICROMAP_INDEXING_INDEXED;
     if (!isIndexed && input.indexingMode != OXRT_OPACITY_MICROMAP_INDEXING_LINEAR)
         fail(OXRT_ERROR_INVALID_VALUE, "input %u: micromap indexing mode %u; give LINEAR or INDEXED", number, input.indexingMode);
@@ -235,6 +239,8 @@ void checkMicromaps(const OxrtOpacityMicromapInput& input, std::uint64_t triangl
              isIndexed ? "NULL; INDEXED needs one per triangle" : "given, but the mode is LINEAR");
     std::shared_ptr<MicromapArray> array;
     if (input.array) array = find(input.array);
+    if (array && array->context.get() != &context)
+        fail(OXRT_ERROR_INVALID_VALUE, "input %u: the opacity micromap array is of another context; build one in this context", number);
     const std::uint64_t available = array ? array->maps().size() : 0;
     for (std::uint64_t i = 0; i < triangles; ++i) {
         if (isIndexed && input.indices[i] < 0) {

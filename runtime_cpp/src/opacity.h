@@ -30,7 +30,7 @@ private:
 };
 
 // Throws Failure.
-void checkMicromaps(const OxrtOpacityMicromapInput& input, std::uint64_t triangles, unsigned number);
+void checkMicromaps(const OxrtOpacityMicromapInput& input, const Context& context, std::uint64_t triangles, unsigned number);
 
 // The micromaps of one build input's triangles.
 class Micromaps {

@@ -17,6 +17,7 @@ namespace oxrt {
 namespace {
 
 constexpr std::uint64_t maxLaunchIndices = std::uint64_t(1) << 30;
+constexpr std::uint64_t maxFrames = std::uint64_t(1) << 40;
 
 // 0 marks an empty record.
 std::uint32_t nextUid()
@@ -306,7 +307,13 @@ OxrtResult oxrtPipelineGetInfo(OxrtPipeline pipeline, OxrtPipelineInfo* info)
 
 OxrtResult oxrtPipelineSetFrames(OxrtPipeline pipeline, uint64_t bytes)
 {
-    return guard([&] { find(pipeline)->setFrames(bytes); });
+    return guard([&] {
+        const auto self = find(pipeline);
+        if (bytes > maxFrames)
+            fail(OXRT_ERROR_INVALID_VALUE, "the frames of a pipeline take %llu bytes; no stack is larger than 2^40",
+                 static_cast<unsigned long long>(bytes));
+        self->setFrames(bytes);
+    });
 }
 
 OxrtResult oxrtPipelineSetStackDepths(OxrtPipeline pipeline, uint32_t traceDepth, uint32_t graphDepth)

@@ -31,6 +31,7 @@ std::size_t keyCount(const OxrtTransformOptions& options)
 void checkKeys(const OxrtTransformOptions& options)
 {
     if (!options.keys) fail(OXRT_ERROR_INVALID_VALUE, "keys is NULL");
+    checkAligned(options.keys, alignof(float), "keys");
     const std::size_t floats = floatsPerKey(options);
     for (std::size_t key = 0; key < keyCount(options); ++key) {
         const float* values = options.keys + floats * key;

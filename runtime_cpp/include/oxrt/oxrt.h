@@ -249,6 +249,40 @@ typedef struct OxrtTextureOptions {
 OXRT_API OxrtResult oxrtTextureCreate(OxrtContext context, const OxrtTextureOptions* options, uint64_t* handle);
 OXRT_API OxrtResult oxrtTextureDestroy(OxrtContext context, uint64_t handle);
 
+/* ---- matrices of cooperative vectors -------------------------------------------------------------------------------------------- */
+
+/* OptiX's numbers. */
+enum { OXRT_COOP_VEC_ELEM_TYPE_FLOAT16 = 0x2A01, OXRT_COOP_VEC_ELEM_TYPE_FLOAT32 = 0x2A03, OXRT_COOP_VEC_ELEM_TYPE_UINT8 = 0x2A04,
+       OXRT_COOP_VEC_ELEM_TYPE_INT8 = 0x2A05, OXRT_COOP_VEC_ELEM_TYPE_UINT32 = 0x2A08, OXRT_COOP_VEC_ELEM_TYPE_INT32 = 0x2A09,
+       OXRT_COOP_VEC_ELEM_TYPE_FLOAT8_E4M3 = 0x2A0A, OXRT_COOP_VEC_ELEM_TYPE_FLOAT8_E5M2 = 0x2A0B };
+enum { OXRT_COOP_VEC_MATRIX_LAYOUT_ROW_MAJOR = 0x2A40, OXRT_COOP_VEC_MATRIX_LAYOUT_COLUMN_MAJOR = 0x2A41,
+       OXRT_COOP_VEC_MATRIX_LAYOUT_INFERENCING_OPTIMAL = 0x2A42, OXRT_COOP_VEC_MATRIX_LAYOUT_TRAINING_OPTIMAL = 0x2A43 };
+
+/* n rows and k columns at an offset that is a multiple of 64. rowColumnStrideInBytes: a multiple of 16, 0: no gaps; not looked at in optimal
+   layouts. sizeInBytes: 0 or at least what oxrtCoopVecMatrixComputeSize tells. */
+typedef struct OxrtCoopVecMatrixDescription {
+    uint32_t n, k;
+    uint32_t offsetInBytes;
+    uint32_t elementType;
+    uint32_t layout;
+    uint32_t rowColumnStrideInBytes;
+    uint32_t sizeInBytes;
+} OxrtCoopVecMatrixDescription;
+
+typedef struct OxrtNetworkDescription {
+    const OxrtCoopVecMatrixDescription* layers;
+    uint32_t numLayers;
+} OxrtNetworkDescription;
+
+/* Bytes of a matrix, a multiple of 64. */
+OXRT_API OxrtResult oxrtCoopVecMatrixComputeSize(OxrtContext context, uint32_t n, uint32_t k, uint32_t elementType, uint32_t layout,
+                                                 uint32_t rowColumnStrideInBytes, size_t* sizeInBytes);
+/* Writes every matrix of every network as the output's description says, when the call returns. Both memories are the caller's and hold what
+   the descriptions tell; they may be the same. The strides lie between networks and are not looked at for one network. */
+OXRT_API OxrtResult oxrtCoopVecMatrixConvert(OxrtContext context, uint32_t numNetworks, const OxrtNetworkDescription* inputNetwork,
+                                             const void* input, size_t inputStrideInBytes, const OxrtNetworkDescription* outputNetwork,
+                                             void* output, size_t outputStrideInBytes);
+
 /* ---- pipelines, program groups, SBT ------------------------------------------------------------------------------------------- */
 
 /* Loads a compiled pipeline (.so made by optixc). */
