@@ -85,6 +85,12 @@ bool isTooDeepInterpreted(const InterpretedThread& owner, uint64_t handle)
     return isTooDeep(owner.thread, findTraversable(*owner.thread.launch, handle));
 }
 
+uint32_t graphDepthInterpreted(const InterpretedThread& owner, uint64_t handle)
+{
+    const OxrtTraversableView* root = findTraversable(*owner.thread.launch, handle);
+    return root ? root->graphDepth : 0;
+}
+
 void* newHitObject(InterpretedThread& owner)
 {
     return new HitObject(owner.thread);

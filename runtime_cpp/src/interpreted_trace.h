@@ -18,6 +18,8 @@ struct InterpretedThread {
 
 void traceInterpreted(InterpretedThread& owner, const OxrtRayArguments& arguments, uint32_t* payload);
 bool isTooDeepInterpreted(const InterpretedThread& owner, uint64_t handle);
+// Traversables one below the other under a handle.
+uint32_t graphDepthInterpreted(const InterpretedThread& owner, uint64_t handle);
 void* newHitObject(InterpretedThread& owner);
 void freeHitObject(void* object);
 void traverseInterpreted(InterpretedThread& owner, void* object, const OxrtRayArguments& arguments, uint32_t* payload);

@@ -7,6 +7,7 @@
 #include "interpreted_trace.h"
 #include "objects.h"
 #include "pipeline.h"
+#include "stack.h"
 
 #include <cstdint>
 #include <memory>
@@ -26,6 +27,14 @@ struct OxrtInterpreterImpl {
 };
 
 using namespace oxrt;
+
+namespace {
+
+// What CPython and its modules take behind a callback, and Embree for each level of a graph; both several times of what was measured.
+constexpr std::size_t stackOfPrograms = 64 << 10;
+constexpr std::size_t stackOfLevel = 8 << 10;
+
+} // namespace
 
 OxrtResult oxrtInterpreterCreate(OxrtPipeline pipeline, const void* params, size_t paramsSize, const OxrtShaderBindingTable* sbt,
                                  uint32_t width, uint32_t height, uint32_t depth, int usesMotion, int usesMicromaps,
@@ -101,6 +110,11 @@ void oxrtInterpreterInvoke(OxrtInterpreter interpreter, void* object, uint32_t* 
 int oxrtInterpreterIsTooDeep(OxrtInterpreter interpreter, uint64_t handle)
 {
     return isTooDeepInterpreted(interpreter->owner, handle);
+}
+
+int oxrtInterpreterHasStack(OxrtInterpreter interpreter, uint64_t handle)
+{
+    return stackLeft() >= stackOfPrograms + stackOfLevel * graphDepthInterpreted(interpreter->owner, handle);
 }
 
 void oxrtInterpreterThrow(OxrtInterpreter interpreter, int32_t code, const uint32_t* details, unsigned count)

@@ -3,6 +3,7 @@
 
 #include "context.h"
 #include "cpu.h"
+#include "stack.h"
 #include "texture.h"
 
 #include <algorithm>
@@ -10,7 +11,6 @@
 #include <cstdint>
 #include <cstdio>
 #include <cstring>
-#include <pthread.h>
 #include <string>
 #include <string_view>
 
@@ -23,24 +23,6 @@ constexpr std::uint32_t largestTile = 1024;
 constexpr std::uint32_t smallestTile = 256;
 constexpr std::uint64_t wantedTilesPerThread = 8;
 constexpr std::uint64_t largestChunk = 16;
-
-// Left for Embree's traversals of a graph of many levels and for its callbacks, on stacks that are large enough for it.
-constexpr std::size_t stackReserve = std::size_t(2) << 20;
-
-// The lowest address of this thread's stack that is no reserve; the first call of a thread asks the system. NULL if that does not know.
-const char* findStackLimit()
-{
-    thread_local const char* limit = nullptr;
-    if (limit) return limit;
-    pthread_attr_t attributes;
-    if (pthread_getattr_np(pthread_self(), &attributes) != 0) return nullptr;
-    void* lowest = nullptr;
-    std::size_t size = 0;
-    pthread_attr_getstack(&attributes, &lowest, &size);
-    pthread_attr_destroy(&attributes);
-    limit = static_cast<const char*>(lowest) + std::min(stackReserve, size / 4);
-    return limit;
-}
 
 std::uint32_t divideUp(std::uint32_t value, std::uint32_t divisor)
 {

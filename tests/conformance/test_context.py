@@ -213,6 +213,62 @@ def test_T038_tasks_of_many_modules_on_many_threads() -> None:
     assert {next(iter(module)) for module, _ in made} == {"__raygen__branch"}
 
 
+def test_T038_one_task_on_many_threads_is_done_once() -> None:
+    """Every thread sees states that only go forward; whoever comes second waits, and finds the module complete."""
+    module, task = ox.DeviceContext().module_create_with_tasks(SHADER)
+    states, opened, begun = ox.ModuleCompileState, [], threading.Barrier(6)
+    open_source, seen = module._open, [[] for _ in range(6)]
+
+    def counted() -> Any:
+        opened.append(module.get_compilation_state())
+        return open_source()
+
+    module._open = counted
+
+    def execute(found: list[Any]) -> None:
+        begun.wait(30)
+        found.append(module.get_compilation_state())
+        found.append(task.execute())
+        found.append(module.get_compilation_state())
+
+    threads = [threading.Thread(target=execute, args=(found,)) for found in seen]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    assert opened == [states.STARTED]
+    assert all(found[0] in (states.NOT_STARTED, states.STARTED, states.COMPLETED) for found in seen)
+    assert [found[1:] for found in seen] == [[[], states.COMPLETED]] * 6
+    assert next(iter(module)) == "__raygen__branch"
+
+
+def test_T038_a_task_that_fails_tells_one_thread(tmp_path: Path) -> None:
+    context, path = ox.DeviceContext(), tmp_path / "faulty.py"
+    path.write_text(FAULTY)
+    made = [context.module_create_with_tasks(path if number == 2 else SHADER) for number in range(4)]
+    begun, errors = threading.Barrier(8), []
+
+    def execute(task: ox.Task) -> None:
+        begun.wait(30)
+        try:
+            task.execute()
+        except ox.CompileError as error:
+            errors.append(str(error))
+
+    threads = [threading.Thread(target=execute, args=(task,)) for _, task in (*made, *made)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    assert len(errors) == 1 and "get_primitive_index" in errors[0]
+    states = ox.ModuleCompileState
+    wanted = [states.COMPLETED, states.COMPLETED, states.FAILED, states.COMPLETED]
+    assert [module.get_compilation_state() for module, _ in made] == wanted
+    with pytest.raises(ox.InvalidOperationError, match="its task failed"):
+        next(iter(made[2][0]))
+    assert next(iter(made[3][0])) == "__raygen__branch"
+
+
 def test_T039_a_module_whose_task_executes_is_not_destroyed() -> None:
     module, _ = ox.DeviceContext().module_create_with_tasks(SHADER)
     entered, leave = threading.Event(), threading.Event()

@@ -25,15 +25,7 @@ RANGES = {Element.INT8: (-128, 127), Element.UINT8: (0, 255)}
 
 HEAD = '''import optixc as ox
 from optixc import CoopVecElemType, CoopVecMatrixLayout
-
-
-@ox.struct
-class Params:
-    vectors: ox.Array[ox.uint8]
-    matrices: ox.Array[ox.uint8]
-    biases: ox.Array[ox.uint8]
-    out: ox.Array2[ox.float64]
-
+from coop_vec_products import Params
 
 params = ox.launch_params(Params)
 

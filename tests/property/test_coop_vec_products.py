@@ -25,7 +25,7 @@ def context(tmp_path_factory: pytest.TempPathFactory) -> Any:
 def results(context: Any, memory: Memory, path: Path) -> dict[str, np.ndarray[Any, Any]]:
     """What each way to run writes; the interpreter runs some launch indices only."""
     path.write_text(memory.text())
-    module = context.module_create(path)
+    module = context.module_create(path, include_dirs=[Path(__file__).parent])
     raygen = context.program_group_create(raygen=module["__raygen__products"])
     table = ox.ShaderBindingTable(raygen=raygen.record())
     found = {}

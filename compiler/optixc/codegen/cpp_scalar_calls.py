@@ -27,7 +27,7 @@ from optixc.ir.nodes import (
     is_reference_type,
 )
 from optixc.ir.types import Struct
-from optixc.ir.walk import expressions
+from optixc.ir.walk import chosen_items, expressions, place_origin
 from optixc.passes.traced_programs import known_flags
 
 _FLAGS_ARGUMENT = 7
@@ -84,21 +84,14 @@ class ScalarCalls:
         """The condition under which a place exists, in checked builds; None where it always does."""
         if not self._options.checks_elements:
             return None
-        conditions = []
-        node = place
-        while not isinstance(node, LocalRef):
-            if isinstance(node, ElementRef):
-                indices = ", ".join(self._expressions.text(index) for index in node.indices)
-                conditions.append(f"oxrt::checked({self._names.thread}).contains({self._expressions.text(node.array)}, {indices})")
-                break
-            if self._options.is_checked and isinstance(node, IndexRef) and not isinstance(node.index, Literal):
-                base_text, index = self._expressions.place(node.base), self._expressions.text(node.index)
-                conditions.append(f"oxrt::checked({self._names.thread}).containsItem({base_text}, {index})")
-            base = getattr(node, "base", None)
-            if base is None:
-                break
-            node = base
-        return " && ".join(reversed(conditions)) or None
+        conditions, element = [], place_origin(place)
+        if isinstance(element, ElementRef):
+            indices = ", ".join(self._expressions.text(index) for index in element.indices)
+            conditions.append(f"oxrt::checked({self._names.thread}).contains({self._expressions.text(element.array)}, {indices})")
+        for item in chosen_items(place) if self._options.is_checked else ():
+            base, index = self._expressions.place(item.base), self._expressions.text(item.index)
+            conditions.append(f"oxrt::checked({self._names.thread}).containsItem({base}, {index})")
+        return " && ".join(conditions) or None
 
     def _has_ended(self) -> str:
         return f"oxrt::hasEnded({self._names.trace})"

@@ -30,6 +30,7 @@ from optixc.ir.nodes import (
     is_reference_type,
 )
 from optixc.ir.types import FixedArray, Struct
+from optixc.ir.walk import chosen_items
 from optixc.passes.traced_programs import known_flags
 from optixc.passes.uniformity import Clone
 
@@ -99,14 +100,10 @@ class LaneCalls:
 
     def guard(self, place: Expr) -> str | None:
         """The condition under which the items on the way to a place of a local exist, in checked builds; None where they always do."""
-        conditions = []
-        node = place
-        while self._options.is_checked and isinstance(node, FieldRef | ComponentRef | IndexRef):
-            if isinstance(node, IndexRef) and not isinstance(node.index, Literal):
-                item = f"{self._expressions.place(node.base)}, {self._expressions.text(node.index)}"
-                conditions.append(f"oxrt::any(oxrt::checked({self._names.thread}, {self._mask}).insideItems({item}))")
-            node = node.base
-        return " && ".join(reversed(conditions)) or None
+        items = chosen_items(place) if self._options.is_checked else []
+        texts = (f"{self._expressions.place(item.base)}, {self._expressions.text(item.index)}" for item in items)
+        checked = f"oxrt::checked({self._names.thread}, {self._mask})"
+        return " && ".join(f"oxrt::any({checked}.insideItems({text}))" for text in texts) or None
 
     # ---- calls ---------------------------------------------------------------------------------------------------------------
 

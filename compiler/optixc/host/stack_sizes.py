@@ -11,12 +11,11 @@ from dataclasses import dataclass, fields
 from typing import Any, Protocol
 
 from optixc.errors import InvalidValueError
+from optixc.host import library
 
 MAX_TRACE_DEPTH = 31
 DEFAULT_CALLABLE_DEPTH = 2
 ALIGNMENT = 16
-STACK_RESERVE = 2 << 20
-"""What the runtime leaves for Embree's traversals (launch.cpp)."""
 
 
 @dataclass
@@ -131,7 +130,7 @@ def nesting_that_fits(stack_sizes: StackSizes, continuation: int) -> int:
 
 def stack_for(frames: int, levels: int) -> int:
     """Bytes of a thread's stack on which `levels` traces may nest, if all functions together take `frames`; an upper bound."""
-    return STACK_RESERVE + (levels + 2) * frames
+    return int(library.lib().OXRT_STACK_RESERVE) + (levels + 2) * frames
 
 
 def _continuation(sizes: StackSizes, trace_depth: int, callable_tree: int) -> int:

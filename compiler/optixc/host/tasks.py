@@ -78,5 +78,7 @@ class TaskModule(Module):
         return super().__iter__()
 
     def _check_complete(self) -> None:
+        if self._state is ModuleCompileState.FAILED:
+            raise InvalidOperationError("this module has no programs, its task failed and said why; create it again from a mended source")
         if self._state is not ModuleCompileState.COMPLETED:
             raise InvalidOperationError(f"this module is {self._state.name}; execute its tasks before its programs are used")

@@ -24,8 +24,8 @@ from optixc.ir.nodes import ParameterRole
 
 HEADER_SIZE = 32
 NO_PROGRAM = -1
-TRACE_DEPTH_CODE = -2
-FLAG_TRACE_DEPTH, FLAG_USER = 2, 4
+STACK_OVERFLOW_CODE, TRACE_DEPTH_CODE = -1, -2
+FLAG_STACK_OVERFLOW, FLAG_TRACE_DEPTH, FLAG_USER = 1, 2, 4
 _RAY_FIELDS = ("tmin", "tmax", "time", "visibilityMask", "rayFlags", "sbtOffset", "sbtStride", "missIndex")
 
 
@@ -92,6 +92,7 @@ class Machine:
     # ---- programs -----------------------------------------------------------------------------------------------------------------
 
     def _run(self, instance: FunctionInstance, frame: Frame, arguments: list[Any]) -> Any:
+        self._check_stack(0)
         self._frames.append(frame)
         try:
             return self._functions.run(instance, arguments)
@@ -174,6 +175,7 @@ class Machine:
             self._too_deep()
         if self._flags & FLAG_TRACE_DEPTH and ray and self._lib.oxrtInterpreterIsTooDeep(self._interpreter, ray[0]):
             self._throw(TRACE_DEPTH_CODE, [])
+        self._check_stack(ray[0] if ray else 0)
         frame = self._frames[-1]
         self._payload_types.append(type_)
         outer, self._words = getattr(self, "_words", None), words
@@ -207,6 +209,16 @@ class Machine:
             self._throw(TRACE_DEPTH_CODE, [])
         raise LaunchFailureError(
             f"traces nest deeper than max_trace_depth = {self._max_trace_depth}; make the pipeline with a larger one"
+        )
+
+    def _check_stack(self, handle: int) -> None:
+        """Threads of Python may have small stacks, and a trace calls back through C."""
+        if self._lib.oxrtInterpreterHasStack(self._interpreter, handle):
+            return
+        if self._flags & FLAG_STACK_OVERFLOW:
+            self._throw(STACK_OVERFLOW_CODE, [])
+        raise LaunchFailureError(
+            "the programs need more stack than this thread has; interpret in a thread with a larger one (threading.stack_size) (code -1)"
         )
 
     def _raise_pending(self) -> None:

@@ -190,6 +190,16 @@ def place_origin(place: Expr) -> Expr:
     return place
 
 
+def chosen_items(place: Expr) -> list[IndexRef]:
+    """The items on the way to a place whose index is no constant, from the origin of the place on."""
+    found: list[IndexRef] = []
+    while isinstance(place, FieldRef | ComponentRef | IndexRef | TupleItem):
+        if isinstance(place, IndexRef) and not isinstance(place.index, Literal):
+            found.append(place)
+        place = place.base
+    return found[::-1]
+
+
 def place_root(place: Expr) -> Local | None:
     """The local that a chain of fields, components and indices starts from; None if it is memory, parameters or a value."""
     origin = place_origin(place)

@@ -49,6 +49,10 @@ OXRT_API void oxrtInterpreterInvoke(OxrtInterpreter interpreter, void* object, u
 /* 1 if the handle leads to a graph that is deeper than the pipeline's configured stack has room for. */
 OXRT_API int oxrtInterpreterIsTooDeep(OxrtInterpreter interpreter, uint64_t handle);
 
+/* 1 if the calling thread's stack has room for a trace against this handle and for the programs that it calls back for; handle 0: for a
+   program that traces nothing. */
+OXRT_API int oxrtInterpreterHasStack(OxrtInterpreter interpreter, uint64_t handle);
+
 /* Within an intersection program: 0 rejected, 1 accepted, 2 accepted and the program ends. At most 8 attribute words. */
 OXRT_API int oxrtInterpreterReport(void* ray, float t, uint32_t kind, const uint32_t* attributes, unsigned count);
 /* Within an any-hit program, which ends with it: drops the candidate, or accepts it and ends the traversal. */

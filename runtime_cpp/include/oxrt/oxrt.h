@@ -300,6 +300,9 @@ typedef struct OxrtPipelineInfo {
 } OxrtPipelineInfo;
 
 OXRT_API OxrtResult oxrtPipelineGetInfo(OxrtPipeline pipeline, OxrtPipelineInfo* info);
+/* Bytes that launches leave on each stack for Embree's traversals of graphs of many levels and for its callbacks, where the stack has so
+   much four times over. */
+enum { OXRT_STACK_RESERVE = 2097152 };
 /* Bytes of stack that all functions of the pipeline take together, as the C++ compiler tells; 0, as at first, if nobody knows. Launches
    keep as much of each stack free where they look for overflows. */
 OXRT_API OxrtResult oxrtPipelineSetFrames(OxrtPipeline pipeline, uint64_t bytes);
