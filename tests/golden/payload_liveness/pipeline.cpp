@@ -47,11 +47,12 @@ struct PathPrograms : oxrt::NoPrograms {
 struct CountPrograms : oxrt::NoPrograms {
     using Payload = Count;
     static constexpr bool hasAnyHit = true;
+    static constexpr bool inlinesAnyHit = true;
     static constexpr bool hasMiss = true;
     static constexpr bool countsDepth = true;
     static constexpr bool checksStack = true;
     static constexpr uint32_t maxTraceDepth = 1;
-    static void anyHit(oxrt::Ray& trace, Payload& payload, const OxrtRecordHeader& record);
+    static OXRT_INLINE void anyHit(oxrt::Ray& trace, Payload& payload, const OxrtRecordHeader& record);
     static void miss(oxrt::Ray& trace, Payload& payload, const OxrtRecordHeader& record);
 };
 
@@ -114,7 +115,7 @@ void miss_count(Count& count) {
     count.hits = count.last > 1.0f ? 7u : 8u;
 }
 
-#line 118 "pipeline.cpp"
+#line 119 "pipeline.cpp"
 void PathPrograms::closestHit(oxrt::Ray& trace, Payload& payload, const OxrtRecordHeader& record) {
     if (record.programs[oxrt::SLOT_CLOSESTHIT] == number::closesthit_next)
         closesthit_next(trace, payload);

@@ -86,11 +86,12 @@ struct PathPrograms : oxrt::NoPrograms {
 struct CountPrograms : oxrt::NoPrograms {
     using Payload = Count;
     static constexpr bool hasAnyHit = true;
+    static constexpr bool inlinesAnyHit = true;
     static constexpr bool hasMiss = true;
     static constexpr bool countsDepth = true;
     static constexpr bool checksStack = true;
     static constexpr uint32_t maxTraceDepth = 1;
-    static void anyHit(oxrt::Ray& trace, Payload& payload, const OxrtRecordHeader& record);
+    static OXRT_INLINE void anyHit(oxrt::Ray& trace, Payload& payload, const OxrtRecordHeader& record);
     static void miss(oxrt::Ray& trace, Payload& payload, const OxrtRecordHeader& record);
 };
 
@@ -115,7 +116,7 @@ OXRT_INLINE void anyhit_count(oxrt::Ray& trace, Count& count) {
     count.last = oxrt::getRayTmax(trace);
 }
 
-#line 119 "pipeline.cpp"
+#line 120 "pipeline.cpp"
 void shade_lanes([[maybe_unused]] Lanes& thread, [[maybe_unused]] Mask mask, Wide<Path>& path, Wide<float> by);
 
 #line 38 "shader.py"
@@ -181,7 +182,7 @@ void miss_count_lanes([[maybe_unused]] Lanes& thread, [[maybe_unused]] Mask mask
     oxrt::assign(mask, count.hits, oxrt::select(count.last > 1.0f, Wide<uint32_t>(7u), Wide<uint32_t>(8u)));
 }
 
-#line 185 "pipeline.cpp"
+#line 186 "pipeline.cpp"
 void PathProgramsLanes::closestHit(Rays& trace, Mask mask, Payload& payload) {
     const Wide<int32_t> program = oxrt::recordPrograms(trace.records, mask, oxrt::SLOT_CLOSESTHIT);
     if (const Mask own = mask & (program == int32_t(number::closesthit_next)); oxrt::any(own))
