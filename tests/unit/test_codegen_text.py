@@ -197,3 +197,11 @@ def test_stored_vectors_are_narrowed() -> None:
     value = ref(local("v", t.FLOAT4))
     assert printer().stored("v", value, half4) == "oxrt::convert<oxrt::half>(v)"
     assert printer().stored("v", value, t.FLOAT4) == "v"
+
+
+def test_literals_beyond_binary32_are_infinite() -> None:
+    """As in the interpreter, and as 1e400 is in Python."""
+    assert text_of_number(1e50, t.FLOAT32) == text_of_number(1e400, t.FLOAT32) == "__builtin_inff()"
+    assert text_of_number(-3.5e38, t.FLOAT32) == "-__builtin_inff()"
+    assert text_of_number(3.4028235e38, t.FLOAT32) == "3.4028235e38f"
+    assert text_of_number(1e50, t.FLOAT64) == "1e50"

@@ -33,6 +33,8 @@ def _integer(value: int, scalar: Scalar) -> str:
 
 
 def _floating(value: float, bits: int) -> str:
+    if bits < 64:
+        value = round_to_float32(value)
     if math.isnan(value):
         return '__builtin_nan("")' if bits == 64 else '__builtin_nanf("")'
     if math.isinf(value):
@@ -55,10 +57,8 @@ def round_to_float32(value: float) -> float:
 
 
 def shortest_float32(value: float) -> str:
-    """The fewest decimal digits that read back as the same binary32 number."""
+    """The fewest decimal digits that read back as the same finite binary32 number."""
     exact = round_to_float32(value)
-    if math.isinf(exact):
-        return "3.4028235e38" if exact > 0 else "-3.4028235e38"
     for digits in range(1, 10):
         text = f"{exact:.{digits}g}"
         if round_to_float32(float(text)) == exact:
