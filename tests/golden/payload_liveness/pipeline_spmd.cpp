@@ -170,7 +170,7 @@ void miss_sky_lanes([[maybe_unused]] Lanes& thread, [[maybe_unused]] Mask mask, 
 }
 
 #line 66 "shader.py"
-void anyhit_count_lanes([[maybe_unused]] Rays& trace, [[maybe_unused]] Mask mask, Wide<Count>& count) {
+OXRT_INLINE void anyhit_count_lanes([[maybe_unused]] Rays& trace, [[maybe_unused]] Mask mask, Wide<Count>& count) {
     [[maybe_unused]] Lanes& thread = *trace.thread;
 #line 67 "shader.py"
     oxrt::assign(mask, count.hits, count.first + 1u);
