@@ -170,12 +170,8 @@ void Accel::setUpScene()
     if (!(buildFlags & OXRT_BUILD_FLAG_NOT_ROBUST)) flags |= RTC_SCENE_FLAG_ROBUST;
     RTCBuildQuality quality = RTC_BUILD_QUALITY_MEDIUM;
     if (buildFlags & OXRT_BUILD_FLAG_PREFER_FAST_TRACE) quality = RTC_BUILD_QUALITY_HIGH;
-    if (buildFlags & OXRT_BUILD_FLAG_PREFER_FAST_BUILD) quality = RTC_BUILD_QUALITY_LOW;
-    const bool holdsInstances = instances && instances->isNative(); // which Embree never refits: it builds over them again, and quickly
-    if (updatable() && !holdsInstances) { // the only combination in which Embree refits instead of building again
-        flags |= RTC_SCENE_FLAG_DYNAMIC;
-        quality = RTC_BUILD_QUALITY_LOW;
-    }
+    if (isBuiltFast()) quality = RTC_BUILD_QUALITY_LOW;
+    if (isRefitted()) flags |= RTC_SCENE_FLAG_DYNAMIC; // with low quality the only combination in which Embree does not build again
     embree.rtcSetSceneFlags(scene, static_cast<RTCSceneFlags>(flags));
     embree.rtcSetSceneBuildQuality(scene, quality);
 
@@ -203,6 +199,21 @@ void Accel::commit()
     describe();
 }
 
+// Embree never refits its own instances: it builds over them again, and quickly.
+bool Accel::isRefitted() const
+{
+    return updatable() && !(instances && instances->isNative());
+}
+
+// With several boxes in a leaf, all of which Embree offers: kernels test those at rest.
+bool Accel::isBuiltFast() const
+{
+    const bool holdsMovingBoxes = motion.numKeys > 1 && std::any_of(geometries.begin(), geometries.end(), [](const auto& one) {
+        return (one->needs() & OXRT_SCENE_HAS_CUSTOM) != 0;
+    });
+    return isRefitted() || ((buildFlags & OXRT_BUILD_FLAG_PREFER_FAST_BUILD) && !holdsMovingBoxes);
+}
+
 void Accel::describe()
 {
     view.scene = scene;
@@ -211,7 +222,8 @@ void Accel::describe()
     view.type = instances ? OXRT_TRAVERSABLE_IAS : OXRT_TRAVERSABLE_GAS;
     view.geometries = geometryViews.data();
     view.geometryCount = static_cast<std::uint32_t>(geometries.size());
-    if (geometries.size() == 1) geometryViews[0].isLone = geometryViews[0].primitiveCount == 1 && geometryViews[0].keyCount == 1;
+    const bool isLone = geometries.size() == 1 && geometryViews[0].primitiveCount == 1;
+    for (OxrtGeometry& one : geometryViews) one.hasUntestedBoxes = one.keyCount == 1 && (isLone || isBuiltFast());
     view.keyCount = motion.numKeys;
     view.motionFlags = motion.flags;
     view.timeBegin = motion.timeBegin;

@@ -53,6 +53,8 @@ private:
     void setUpScene();
     void commit();
     bool updatable() const { return (buildFlags & OXRT_BUILD_FLAG_ALLOW_UPDATE) != 0; }
+    bool isRefitted() const;
+    bool isBuiltFast() const;
 
     const std::uint32_t buildFlags;
     const OxrtMotionOptions motion; // numKeys 1 if static

@@ -122,3 +122,11 @@ def test_T116_attributes_reach_the_hit_through_an_instance(harness: Harness) -> 
     (result,) = trace(harness, scene, [ray((0.5, 0.5, 8.0), root="ias")], custom(reported(7.0, 9, attributes=ATTRIBUTES)))
     assert calls(result, "IS")[0]["oo"] == [0.25, 0.25, 4.0]
     assert (closest(result)["tmax"], closest(result)["attr"]) == (7.0, list(ATTRIBUTES))
+
+
+@pytest.mark.parametrize("flags", [0, ox.BuildFlags.PREFER_FAST_BUILD, ox.BuildFlags.PREFER_FAST_TRACE, ox.BuildFlags.ALLOW_UPDATE])
+def test_only_boxes_that_a_ray_meets_are_offered(harness: Harness, flags: int) -> None:
+    bounds = [[2.0 * i, 0.0, -0.5, 2.0 * i + 1.0, 1.0, 0.5] for i in range(5)]
+    rays = [ray((2.0 * i + 0.5, 0.5, 5.0)) for i in range(5)] + [ray((1.5, 0.5, 5.0))]
+    results = trace(harness, [gas(boxes(bounds), build_flags=int(flags))], rays, custom(reported(5.0)))
+    assert [[event["prim"] for event in calls(result, "IS")] for result in results] == [[0], [1], [2], [3], [4], []]

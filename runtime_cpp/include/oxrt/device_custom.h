@@ -8,7 +8,7 @@ namespace oxrt {
 inline namespace OXRT_ISA {
 
 /* Whether the ray meets a box inside its interval, faces included; in doubt it does. Embree calls back without this test where a scene
-   holds one primitive. */
+   holds one primitive, or was built fast, with several in a leaf. */
 OXRT_INLINE bool meetsBox(const RTCRay& ray, const float* box, float tmin, float tmax) {
     const float origin[3] = {ray.org_x, ray.org_y, ray.org_z};
     const float direction[3] = {ray.dir_x, ray.dir_y, ray.dir_z};
@@ -42,7 +42,7 @@ template <class Programs> OXRT_INLINE void runIntersection(Ray& ray, RTCRay& emb
     ray.objectRay = &embreeRay;
     if (embreeRay.tfar != ray.closestInEmbree)
         ray.closest = ray.closestInEmbree = embreeRay.tfar;
-    if (ray.geometry->isLone && !meetsBox(embreeRay, ray.geometry->vertices, ray.tmin, ray.closest))
+    if (ray.geometry->hasUntestedBoxes && !meetsBox(embreeRay, ray.geometry->vertices + 6 * uint64_t(primitive), ray.tmin, ray.closest))
         return;
     if (Programs::hasAnyHit || (ray.flags & RAY_CULL_ANY)) {
         const uint32_t instanceFlags = ray.instance ? ray.instance->flags : 0;

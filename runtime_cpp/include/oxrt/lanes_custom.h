@@ -88,9 +88,9 @@ template <class Programs, int W, class Arguments> OXRT_INLINE void runIntersecti
         ray.closest = select(nearer, tfar, ray.closest);
         ray.closestInEmbree = select(nearer, tfar, ray.closestInEmbree);
     }
-    if (geometry.isLone) {
+    if (geometry.hasUntestedBoxes) {
         const Wide<float3, W> inverse = inverseOf(getObjectRayDirection(ray));
-        mask = mask & meetingBox<W>(getObjectRayOrigin(ray), inverse, geometry.vertices, ray.tmin, ray.closest);
+        mask = mask & meetingBox<W>(getObjectRayOrigin(ray), inverse, geometry.vertices + 6 * uint64_t(primitive), ray.tmin, ray.closest);
         if (none(mask))
             return;
     }

@@ -77,7 +77,7 @@ typedef struct OxrtGeometry {
     const float* widths;           /* ribbons: 8 floats per primitive and key: unit vectors across, at the beginning and at the end of each
                                       segment, and how much of the way along the axis is added from the one and from the other */
     uint32_t hasEndcaps;           /* curves */
-    uint32_t isLone;               /* custom primitives: the only one of a structure, which Embree offers without a look at its box */
+    uint32_t hasUntestedBoxes;     /* custom primitives at rest that Embree offers without a look at each box: the only one, or built fast */
     const void* shape;             /* the runtime's own */
 } OxrtGeometry;
 
