@@ -1,4 +1,4 @@
-"""Graphs against the flattened static scene on the same rays, a million instances, and updates against builds.
+"""Graphs against the flattened static scene on the same rays, and a million instances.
 
 `python -m benchmarks.graphs` prints one row for each. The scene is 64 bunnies in a cube, apart from each other; two levels are 8 groups of
 8 neighbours; the moving graph has a matrix-motion transform of two equal keys above every bunny.
@@ -38,7 +38,7 @@ class GraphTime:
     allowed: float
 
 
-def _normalised(name: str) -> tuple[Floats, Any]:
+def normalised_mesh(name: str) -> tuple[Floats, Any]:
     """The mesh within the cube from -1 to 1."""
     path = scenes_folder() / f"{name}.npz"
     if not path.is_file():
@@ -68,7 +68,7 @@ def _instances(context: ox.DeviceContext, children: list[Any], places: list[Floa
 
 def scenes(context: ox.DeviceContext) -> dict[str, Any]:
     """The same picture four ways."""
-    vertices, triangles = _normalised("bunny")
+    vertices, triangles = normalised_mesh("bunny")
     places = _places()
     bunny = context.accel_build([ox.BuildInputTriangles(vertices, triangles)])
     moved = np.concatenate([vertices @ place[:, :3].T + place[:, 3] for place in places]).astype(np.float32)
@@ -113,7 +113,7 @@ def clock_seconds(clock: Clock) -> float:
 
 def measure_million(context: ox.DeviceContext, clock: Clock = Clock.WALL) -> tuple[float, float]:
     """Seconds and MiB of an IAS of a million bunnies."""
-    vertices, triangles = _normalised("bunny")
+    vertices, triangles = normalised_mesh("bunny")
     bunny = context.accel_build([ox.BuildInputTriangles(vertices, triangles)])
     number = np.arange(MILLION)
     places = np.zeros((MILLION, 3, 4), np.float32)
@@ -124,44 +124,9 @@ def measure_million(context: ox.DeviceContext, clock: Clock = Clock.WALL) -> tup
     return clock_seconds(clock) - start, built.memory_usage / 2**20
 
 
-@dataclass
-class Updates:
-    """Seconds of a build of the dragon that allows updates and of its updates, the first included; tracing after them over before."""
-
-    build: float
-    updates: list[float]
-    tracing: float
-
-
-def measure_updates(context: ox.DeviceContext, clock: Clock = Clock.WALL, updates: int = 4) -> Updates:
-    """The dragon is moved, and bent by a twentieth of its size; rays are those of the graphs, one by one."""
-    vertices, triangles = _normalised("dragon")
-    start = clock_seconds(clock)
-    built = context.accel_build([ox.BuildInputTriangles(vertices, triangles)], build_flags=ox.BuildFlags.ALLOW_UPDATE)
-    build, found = clock_seconds(clock) - start, []
-    for number in range(updates):
-        bend = np.float32(0.05 * (number + 1) / updates) * np.sin(np.float32(3.0) * vertices[:, [1, 2, 0]])
-        start = clock_seconds(clock)
-        built.update([ox.BuildInputTriangles(vertices + bend, triangles)])
-        found.append(clock_seconds(clock) - start)
-    rebuilt = context.accel_build([ox.BuildInputTriangles(vertices + bend, triangles)], build_flags=ox.BuildFlags.ALLOW_UPDATE)
-    shader = shader_module("graphs")
-    module = context.module_create(shader)
-    groups = [
-        context.program_group_create(**{kind: module[f"__{kind}__{name}"]})
-        for kind, name in (("raygen", "incoherent"), ("miss", "nothing"), ("closesthit", "distance"))
-    ]
-    table = ox.ShaderBindingTable(raygen=groups[0].record(), miss=[groups[1].record()], hitgroup=[groups[2].record()])
-    pipeline = context.pipeline_create(groups, simd=1)
-    scenes_by_name = {"updated": built, "rebuilt": rebuilt}
-    contenders = [LaunchContender(name, pipeline, table, _params(shader, one), SIZE, SIZE) for name, one in scenes_by_name.items()]
-    timings = interleave(contenders, 3, clock)
-    return Updates(build, found, timings.speed_up("rebuilt", "updated"))
-
-
 def main() -> None:
     parser = argparse.ArgumentParser(prog="python -m benchmarks.graphs", description=__doc__)
-    parser.add_argument("--parts", default="million,updates,graphs", help="comma-separated")
+    parser.add_argument("--parts", default="million,graphs", help="comma-separated")
     parser.add_argument("--lanes", default="1,8,16", help="widths, comma-separated")
     parser.add_argument("--rounds", type=int, default=ROUNDS)
     parser.add_argument("--clock", choices=[clock.value for clock in Clock], default=Clock.WALL.value)
@@ -171,10 +136,6 @@ def main() -> None:
     if "million" in parts:
         seconds, mebibytes = measure_million(context, clock)
         print(f"1,000,000 instances: {seconds:.2f} s, {mebibytes:.0f} MiB (allowed 10 s, 1536 MiB)")
-    if "updates" in parts:
-        one = measure_updates(context, clock)
-        shares = ", ".join(f"{seconds / one.build:.3f}" for seconds in one.updates)
-        print(f"dragon: built in {one.build:.3f} s, updates {shares} of it (allowed 0.25); tracing {one.tracing:.2f} of a new build's time")
     if "graphs" in parts:
         for found in measure(tuple(int(part) for part in arguments.lanes.split(",")), arguments.rounds, clock):
             row = f"{found.graph:>10}, {found.rays:>10}, {found.lanes:2} lanes"

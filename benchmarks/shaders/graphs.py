@@ -60,3 +60,8 @@ def __closesthit__distance(ray: Distance):
 @ox.program
 def __miss__nothing(ray: Distance):
     ray.t = -1.0
+
+
+@ox.program
+def __intersection__nothing():
+    """Every box along the ray is looked at."""

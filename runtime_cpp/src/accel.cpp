@@ -115,7 +115,9 @@ void Accel::build(std::span<const OxrtBuildInput> inputs, const Accel* original)
 {
     const auto begin = std::chrono::steady_clock::now();
     if (inputs[0].type == OXRT_BUILD_INPUT_INSTANCES)
-        instances = std::make_unique<Instances>(*context, instancesOf(inputs[0]), motion, original ? original->instances.get() : nullptr);
+        instances = std::make_unique<Instances>(*context, instancesOf(inputs[0]), motion,
+                                                (buildFlags & OXRT_BUILD_FLAG_PREFER_FAST_BUILD) != 0,
+                                                original ? original->instances.get() : nullptr);
     else
         buildGeometries(inputs);
     makeScene();
@@ -153,12 +155,19 @@ void Accel::buildGeometries(std::span<const OxrtBuildInput> inputs)
 {
     std::uint32_t recordBase = 0;
     for (const OxrtBuildInput& input : inputs) {
-        geometries.push_back(std::make_unique<Geometry>(input, recordBase));
+        geometries.push_back(std::make_unique<Geometry>(input, recordBase, geometryQuality()));
         recordBase += input.numSbtRecords;
     }
     std::size_t extras = 0;
     for (const auto& geometry : geometries) extras += geometry->hasExtra();
     geometryViews.resize(geometries.size() + extras); // never again: Embree keeps pointers to them
+}
+
+// Embree refits instead of building again where the scene's quality is low and the geometry's says so.
+RTCBuildQuality Accel::geometryQuality() const
+{
+    if (updatable()) return RTC_BUILD_QUALITY_REFIT;
+    return buildFlags & OXRT_BUILD_FLAG_PREFER_FAST_BUILD ? RTC_BUILD_QUALITY_LOW : RTC_BUILD_QUALITY_MEDIUM;
 }
 
 void Accel::setUpScene()
@@ -175,13 +184,13 @@ void Accel::setUpScene()
     embree.rtcSetSceneFlags(scene, static_cast<RTCSceneFlags>(flags));
     embree.rtcSetSceneBuildQuality(scene, quality);
 
-    if (instances) instances->attach(embree, context->device, scene, updatable());
+    if (instances) instances->attach(embree, context->device, scene, geometryQuality());
     for (unsigned i = 0; i < geometries.size(); ++i)
-        geometries[i]->attach(embree, context->device, scene, i, geometryViews[i], updatable());
+        geometries[i]->attach(embree, context->device, scene, i, geometryViews[i]);
     auto extra = static_cast<unsigned>(geometries.size());
     for (unsigned i = 0; i < geometries.size(); ++i)
         if (geometries[i]->hasExtra()) {
-            geometries[i]->attachExtra(embree, context->device, scene, i, extra, geometryViews[i], geometryViews[extra], updatable());
+            geometries[i]->attachExtra(embree, context->device, scene, i, extra, geometryViews[i], geometryViews[extra]);
             ++extra;
         }
 }
@@ -231,6 +240,7 @@ void Accel::describe()
     view.buildFlags = buildFlags;
     view.instances = instances ? instances->data() : nullptr;
     view.instanceTraversables = instances ? instances->traversables() : nullptr;
+    view.instanceBoxes = instances ? instances->boxes() : nullptr;
     view.hasNativeInstances = instances && instances->isNative();
     view.graphDepth = instances ? instances->graphDepth() + 1 : 1;
     view.instanceCount = instances ? instances->size() : 0;

@@ -50,6 +50,7 @@ private:
     void buildGeometries(std::span<const OxrtBuildInput> inputs);
     void describe();
     void checkSameShape(std::span<const OxrtBuildInput> inputs) const;
+    RTCBuildQuality geometryQuality() const;
     void setUpScene();
     void commit();
     bool updatable() const { return (buildFlags & OXRT_BUILD_FLAG_ALLOW_UPDATE) != 0; }

@@ -27,7 +27,11 @@ public:
         if (size != 0) std::memcpy(elements.get(), source, size * sizeof(T));
     }
 
-    Array(const Array& original) : Array(original.data(), original.size()) {}
+    // Nothing stays nothing: some tell by the address whether there is an array.
+    Array(const Array& original)
+    {
+        if (original.elements) *this = Array(original.data(), original.size());
+    }
     Array(Array&&) = default;
     Array& operator=(Array&&) = default;
 

@@ -52,6 +52,7 @@ RTCGeometry CurveCaps::make(const EmbreeLibrary& embree, RTCDevice device, unsig
     const RTCGeometry geometry = embree.rtcNewGeometry(device, RTC_GEOMETRY_TYPE_USER);
     extra = view;
     extra.shape = this;
+    extra.boxes = nullptr;
     setOwnShape(embree, geometry, extra, ownShapeOf<intersectCap>, capBounds, count(), view.keyCount);
     return geometry;
 }

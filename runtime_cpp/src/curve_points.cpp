@@ -34,7 +34,10 @@ float largestIn01(const float (&terms)[4])
     const double c = terms[2];
     const double d = 3 * double(terms[3]);
     const double discriminant = c * c - b * d;
-    if (discriminant > 0) {
+    // most curves only rise or only fall: then so do the derivative's Bezier coefficients
+    const bool rises = b >= 0 && b + c >= 0 && b + 2 * c + d >= 0;
+    const bool falls = b <= 0 && b + c <= 0 && b + 2 * c + d <= 0;
+    if (!rises && !falls && discriminant > 0) {
         const double q = -(c + std::copysign(std::sqrt(discriminant), c));
         for (const double u : {q / d, b / q})
             if (u > 0 && u < 1) largest = std::max(largest, at(u));
@@ -85,7 +88,8 @@ void CurvePoints::copy(const OxrtBuildInput& input)
     for (std::uint32_t key = 0; key < keyCount; ++key)
         for (std::uint64_t i = 0; i < pointCount; ++i) {
             float* point = points.data() + 4 * (pointCount * key + i);
-            std::copy_n(input.vertices[key] + 3 * i, 3, point);
+            const float* const vertex = input.vertices[key] + 3 * i;
+            for (int axis = 0; axis < 3; ++axis) point[axis] = vertex[axis];
             point[3] = input.radii[key][i];
         }
     std::copy_n(input.indices, segmentCount, firsts.data());

@@ -104,7 +104,8 @@ void transformPoints(const float* matrix, float* points, std::uint64_t count)
 void boxBounds(const RTCBoundsFunctionArguments* arguments)
 {
     const auto& geometry = *static_cast<const OxrtGeometry*>(arguments->geometryUserPtr);
-    *arguments->bounds_o = boundsOfBox(geometry.vertices + 6 * (geometry.vertexCount * arguments->timeStep + arguments->primID));
+    const float* const box = geometry.vertices + 6 * (geometry.vertexCount * arguments->timeStep + arguments->primID);
+    *arguments->bounds_o = boundsOfBox(box);
 }
 
 // Runs where a pipeline without intersection programs meets custom primitives: nothing is hit.
@@ -161,7 +162,8 @@ std::unique_ptr<Shape> makeShape(const OxrtBuildInput& input)
 
 } // namespace
 
-Geometry::Geometry(const OxrtBuildInput& input, std::uint32_t recordBase) : inputType(input.type), shape(makeShape(input))
+Geometry::Geometry(const OxrtBuildInput& input, std::uint32_t recordBase, RTCBuildQuality buildQuality)
+    : inputType(input.type), quality(buildQuality), shape(makeShape(input))
 {
     view.primitiveCount = static_cast<std::uint32_t>(input.numPrimitives);
     view.primitiveIndexOffset = input.primitiveIndexOffset;
@@ -181,14 +183,17 @@ Geometry::Geometry(const OxrtBuildInput& input, std::uint32_t recordBase) : inpu
         view.vertexCount = view.primitiveCount;
         vertices = Array<float>(6 * view.vertexCount * view.keyCount);
     }
+    // In leaves of quick builds and of updatable ones lie several primitives. Those of an intersection program have their boxes anyhow.
+    const bool isOffered = quality != RTC_BUILD_QUALITY_MEDIUM || view.primitiveCount == 1;
+    if (shape && shape->isOwn() && view.keyCount == 1 && isOffered) boxes = Array<float>(6 * std::size_t(view.primitiveCount));
     describe();
     update(input);
 }
 
 Geometry::Geometry(const Geometry& original)
-    : inputType(original.inputType), view(original.view), recordFlags(original.recordFlags), recordOffsets(original.recordOffsets),
-      vertices(original.vertices), indices(original.indices), shape(original.shape ? original.shape->clone() : nullptr),
-      micromaps(original.micromaps)
+    : inputType(original.inputType), quality(original.quality), view(original.view), recordFlags(original.recordFlags),
+      recordOffsets(original.recordOffsets), vertices(original.vertices), indices(original.indices), boxes(original.boxes),
+      shape(original.shape ? original.shape->clone() : nullptr), micromaps(original.micromaps)
 {
     describe();
     micromaps.describe(view);
@@ -201,6 +206,7 @@ void Geometry::describe()
     view.recordOffsets = recordOffsets.data();
     view.vertices = vertices.data();
     view.indices = indices.data();
+    view.boxes = boxes.data();
     if (shape) shape->describe(view);
 }
 
@@ -268,14 +274,15 @@ std::uint32_t Geometry::needs() const
 
 std::size_t Geometry::bytes() const
 {
-    return recordFlags.bytes() + recordOffsets.bytes() + vertices.bytes() + indices.bytes() + (shape ? shape->bytes() : 0) + micromaps.bytes();
+    return recordFlags.bytes() + recordOffsets.bytes() + vertices.bytes() + indices.bytes() + boxes.bytes() +
+           (shape ? shape->bytes() : 0) + micromaps.bytes();
 }
 
-void Geometry::prepare(const EmbreeLibrary& embree, RTCGeometry geometry, const OxrtGeometry& target, bool updatable) const
+void Geometry::prepare(const EmbreeLibrary& embree, RTCGeometry geometry, const OxrtGeometry& target) const
 {
     embree.rtcSetGeometryUserData(geometry, const_cast<OxrtGeometry*>(&target));
     embree.rtcSetGeometryMask(geometry, ~0u); // Embree's default is 1
-    embree.rtcSetGeometryBuildQuality(geometry, updatable ? RTC_BUILD_QUALITY_REFIT : RTC_BUILD_QUALITY_MEDIUM);
+    embree.rtcSetGeometryBuildQuality(geometry, quality);
     embree.rtcSetGeometryEnableFilterFunctionFromArguments(geometry, anyHitPossible());
 }
 
@@ -301,25 +308,24 @@ RTCGeometry Geometry::makeBoxes(const EmbreeLibrary& embree, RTCDevice device, O
     return geometry;
 }
 
-void Geometry::attach(const EmbreeLibrary& embree, RTCDevice device, RTCScene scene, unsigned geomID, OxrtGeometry& target,
-                      bool updatable) const
+void Geometry::attach(const EmbreeLibrary& embree, RTCDevice device, RTCScene scene, unsigned geomID, OxrtGeometry& target) const
 {
     target = view;
     if (view.primitiveCount == 0) return; // the number stays reserved
     const RTCGeometry geometry = shape                                                 ? shape->make(embree, device, target)
                                  : view.primitiveType == OXRT_PRIMITIVE_CUSTOM ? makeBoxes(embree, device, target)
                                                                                : makeTriangles(embree, device);
-    prepare(embree, geometry, target, updatable);
+    prepare(embree, geometry, target);
     embree.rtcCommitGeometry(geometry);
     embree.rtcAttachGeometryByID(scene, geometry, geomID);
     embree.rtcReleaseGeometry(geometry);
 }
 
 void Geometry::attachExtra(const EmbreeLibrary& embree, RTCDevice device, RTCScene scene, unsigned geomID, unsigned extraID,
-                           const OxrtGeometry& target, OxrtGeometry& extra, bool updatable) const
+                           const OxrtGeometry& target, OxrtGeometry& extra) const
 {
     const RTCGeometry geometry = shape->makeExtra(embree, device, geomID, target, extra);
-    prepare(embree, geometry, extra, updatable);
+    prepare(embree, geometry, extra);
     embree.rtcCommitGeometry(geometry);
     embree.rtcAttachGeometryByID(scene, geometry, extraID);
     embree.rtcReleaseGeometry(geometry);

@@ -23,16 +23,16 @@ public:
     static void check(const Context& context, const OxrtBuildInput& input, unsigned number);
 
     // `input` passed check().
-    Geometry(const OxrtBuildInput& input, std::uint32_t recordBase);
+    Geometry(const OxrtBuildInput& input, std::uint32_t recordBase, RTCBuildQuality quality);
     // With arrays of its own.
     Geometry(const Geometry& original);
 
     // `target` is what kernels see; it becomes the user pointer of the Embree geometry and must outlive it.
-    void attach(const EmbreeLibrary& embree, RTCDevice device, RTCScene scene, unsigned geomID, OxrtGeometry& target, bool updatable) const;
+    void attach(const EmbreeLibrary& embree, RTCDevice device, RTCScene scene, unsigned geomID, OxrtGeometry& target) const;
     // A second Embree geometry for what the first cannot hold (the flat ends of curves); its number is no build input's.
     bool hasExtra() const { return shape && shape->extraCount() != 0; }
     void attachExtra(const EmbreeLibrary& embree, RTCDevice device, RTCScene scene, unsigned geomID, unsigned extraID,
-                     const OxrtGeometry& target, OxrtGeometry& extra, bool updatable) const;
+                     const OxrtGeometry& target, OxrtGeometry& extra) const;
 
     // Other coordinates, flags and offsets; the shape is that of the construction.
     void update(const OxrtBuildInput& input);
@@ -54,16 +54,18 @@ private:
     void copyTriangles(const OxrtBuildInput& input);
     void copyBoxes(const OxrtBuildInput& input);
     bool anyHitPossible() const;
-    void prepare(const EmbreeLibrary& embree, RTCGeometry geometry, const OxrtGeometry& target, bool updatable) const;
+    void prepare(const EmbreeLibrary& embree, RTCGeometry geometry, const OxrtGeometry& target) const;
     RTCGeometry makeTriangles(const EmbreeLibrary& embree, RTCDevice device) const;
     RTCGeometry makeBoxes(const EmbreeLibrary& embree, RTCDevice device, OxrtGeometry& target) const;
 
     std::uint32_t inputType;
+    RTCBuildQuality quality;
     OxrtGeometry view = {};
     Array<std::uint32_t> recordFlags;
     Array<std::uint32_t> recordOffsets;
     Array<float> vertices;
     Array<std::uint32_t> indices;
+    Array<float> boxes; // see OxrtGeometry; the bounds callbacks enter them
     std::unique_ptr<Shape> shape; // spheres and curves
     Micromaps micromaps;
     bool indicesChanged = false; // by the last update

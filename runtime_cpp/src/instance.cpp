@@ -19,6 +19,8 @@ namespace {
 constexpr std::size_t maxInstances = std::size_t(1) << 28;
 constexpr std::uint32_t idLimit = 1u << 28;
 constexpr std::uint32_t fullMask = 0xFF;
+// So many that the time of a build counts.
+constexpr std::size_t manyInstances = 4096;
 
 unsigned long long printable(std::size_t number)
 {
@@ -42,8 +44,8 @@ void checkInstance(const OxrtInstance& instance, std::size_t number)
 } // namespace
 
 Instances::Instances(const Context& context, std::span<const OxrtInstance> instances, const OxrtMotionOptions& motionOptions,
-                     const Instances* original)
-    : motion(motionOptions)
+                     bool prefersOwn, const Instances* original)
+    : motion(motionOptions), mayBeNative(!prefersOwn || instances.size() < manyInstances)
 {
     if (instances.size() > maxInstances)
         fail(OXRT_ERROR_INVALID_VALUE, "%llu instances; an IAS holds at most 2^28", printable(instances.size()));
@@ -93,10 +95,11 @@ unsigned Instances::graphDepth() const
     return deepest;
 }
 
-// Embree's own instances know one level, no vanishing, and one time for everything below.
+// Embree's own instances know one level, no vanishing, and one time for everything below. It builds again over them at every update, where
+// it refits ours, and takes longer for the first build too; rays go through them more quickly.
 void Instances::gatherNeeds()
 {
-    native = motion.numKeys < 2 || motion.flags == 0;
+    native = mayBeNative && (motion.numKeys < 2 || motion.flags == 0);
     for (const Child& child : children) {
         const OxrtTraversableView& view = child.traversable->traversable();
         sceneNeeds |= view.needs;
@@ -120,21 +123,21 @@ void Instances::describe(const OxrtInstance& instance, OxrtInstanceView& view)
     if (instance.visibilityMask != fullMask) sceneNeeds |= OXRT_SCENE_HAS_MASKS;
 }
 
-void Instances::attach(const EmbreeLibrary& embree, RTCDevice device, RTCScene scene, bool updatable)
+void Instances::attach(const EmbreeLibrary& embree, RTCDevice device, RTCScene scene, RTCBuildQuality quality)
 {
     if (native)
-        attachNative(embree, device, scene, updatable);
+        attachNative(embree, device, scene, quality);
     else if (size() != 0)
-        attachOwn(embree, device, scene, updatable);
+        attachOwn(embree, device, scene, quality);
 }
 
-void Instances::attachNative(const EmbreeLibrary& embree, RTCDevice device, RTCScene scene, bool updatable) const
+void Instances::attachNative(const EmbreeLibrary& embree, RTCDevice device, RTCScene scene, RTCBuildQuality quality) const
 {
     for (std::uint32_t i = 0; i < size(); ++i) {
         if (!views[i].child || !views[i].child->scene) continue; // the number stays reserved
         const RTCGeometry geometry = embree.rtcNewGeometry(device, RTC_GEOMETRY_TYPE_INSTANCE);
         embree.rtcSetGeometryInstancedScene(geometry, static_cast<RTCScene>(views[i].child->scene));
-        embree.rtcSetGeometryBuildQuality(geometry, updatable ? RTC_BUILD_QUALITY_REFIT : RTC_BUILD_QUALITY_MEDIUM);
+        embree.rtcSetGeometryBuildQuality(geometry, quality);
         embree.rtcSetGeometryTransform(geometry, 0, RTC_FORMAT_FLOAT3X4_ROW_MAJOR, views[i].objectToWorld);
         embree.rtcSetGeometryMask(geometry, views[i].visibilityMask);
         embree.rtcCommitGeometry(geometry);
@@ -167,15 +170,29 @@ void Instances::boundChildren()
     }
 }
 
+RTCBounds Instances::boundsOf(std::uint32_t number, unsigned step) const
+{
+    if (usable[number]) return imageOf(views[number].objectToWorld, children[childNumbers[number]].bounds[step]);
+    // a refit brings back no primitive that the build dropped, so one that may be usable later keeps a place
+    return keepsUnusable ? RTCBounds{} : emptyBounds();
+}
+
+// In their order, which is quicker than in that of Embree's structure.
+void Instances::boundInstances()
+{
+    boundChildren();
+    for (std::uint32_t i = 0; i < ownBoxes.size() / 6; ++i) storeBox(boundsOf(i, 0), ownBoxes.data() + 6 * std::size_t(i));
+}
+
 void Instances::boundInstance(const RTCBoundsFunctionArguments* arguments)
 {
     const auto& self = *static_cast<const Instances*>(arguments->geometryUserPtr);
-    const std::uint32_t number = arguments->primID;
-    if (self.usable[number])
-        *arguments->bounds_o = imageOf(self.views[number].objectToWorld,
-                                       self.children[self.childNumbers[number]].bounds[arguments->timeStep]);
-    else // a refit brings back no primitive that the build dropped, so one that may be usable later keeps a place
-        *arguments->bounds_o = self.keepsUnusable ? RTCBounds{} : emptyBounds();
+    if (self.ownBoxes.size() == 0) {
+        *arguments->bounds_o = self.boundsOf(arguments->primID, arguments->timeStep);
+    } else {
+        const float* const box = self.ownBoxes.data() + 6 * std::size_t(arguments->primID);
+        *arguments->bounds_o = {box[0], box[1], box[2], 0, box[3], box[4], box[5], 0};
+    }
 }
 
 RTCBounds Instances::boundsAt(float time) const
@@ -191,16 +208,18 @@ RTCBounds Instances::boundsAt(float time) const
     return all;
 }
 
-void Instances::attachOwn(const EmbreeLibrary& embree, RTCDevice device, RTCScene scene, bool updatable)
+void Instances::attachOwn(const EmbreeLibrary& embree, RTCDevice device, RTCScene scene, RTCBuildQuality quality)
 {
-    keepsUnusable = updatable;
-    boundChildren();
+    keepsUnusable = quality == RTC_BUILD_QUALITY_REFIT;
+    needsBoxes = quality != RTC_BUILD_QUALITY_MEDIUM; // otherwise Embree offers an instance only where its box is met
+    if (timeSteps() == 1) ownBoxes = Array<float>(6 * std::size_t(size()));
+    boundInstances();
     const RTCGeometry geometry = embree.rtcNewGeometry(device, RTC_GEOMETRY_TYPE_USER);
     embree.rtcSetGeometryUserPrimitiveCount(geometry, size());
     embree.rtcSetGeometryTimeStepCount(geometry, timeSteps());
     embree.rtcSetGeometryUserData(geometry, this);
     embree.rtcSetGeometryMask(geometry, ~0u); // kernels look at the mask of each instance
-    embree.rtcSetGeometryBuildQuality(geometry, updatable ? RTC_BUILD_QUALITY_REFIT : RTC_BUILD_QUALITY_MEDIUM);
+    embree.rtcSetGeometryBuildQuality(geometry, quality);
     embree.rtcSetGeometryBoundsFunction(geometry, boundInstance, this);
     embree.rtcSetGeometryIntersectFunction(geometry, [](const RTCIntersectFunctionNArguments*) {}); // kernels bring their own
     embree.rtcSetGeometryOccludedFunction(geometry, [](const RTCOccludedFunctionNArguments*) {});
@@ -227,7 +246,7 @@ void Instances::update(std::span<const OxrtInstance> instances)
 void Instances::refit(const EmbreeLibrary& embree, RTCScene scene)
 {
     if (!native && size() != 0) {
-        boundChildren();
+        boundInstances();
         embree.rtcCommitGeometry(embree.rtcGetGeometry(scene, 0));
     }
     for (std::uint32_t i = 0; native && i < size(); ++i) {
@@ -263,7 +282,7 @@ void Instances::removeHandles(Context& context)
 
 std::size_t Instances::bytes() const
 {
-    return views.bytes() + ownTraversables.bytes() + childNumbers.bytes() + usable.bytes();
+    return views.bytes() + ownTraversables.bytes() + ownBoxes.bytes() + childNumbers.bytes() + usable.bytes();
 }
 
 } // namespace oxrt

@@ -21,11 +21,12 @@ class Context;
 class Instances {
 public:
     // Throws Failure for instances that cannot be built. Keeps the children alive.
+    // `prefersOwn`: the build and its updates are to be quick, which makes them our own where there are many.
     // `original`: whose children may be named as well when their handles are stale.
-    Instances(const Context& context, std::span<const OxrtInstance> instances, const OxrtMotionOptions& motion,
+    Instances(const Context& context, std::span<const OxrtInstance> instances, const OxrtMotionOptions& motion, bool prefersOwn,
               const Instances* original = nullptr);
 
-    void attach(const EmbreeLibrary& embree, RTCDevice device, RTCScene scene, bool updatable);
+    void attach(const EmbreeLibrary& embree, RTCDevice device, RTCScene scene, RTCBuildQuality quality);
 
     // Other transforms, ids, offsets, masks and flags of the same children.
     void update(std::span<const OxrtInstance> instances);
@@ -40,6 +41,8 @@ public:
     std::uint32_t size() const { return static_cast<std::uint32_t>(views.size()); }
     std::uint32_t needs() const { return sceneNeeds; }
     bool isNative() const { return native; }
+    // What kernels look at before they enter an instance; null where Embree has done so.
+    const float* boxes() const { return needsBoxes ? ownBoxes.data() : nullptr; }
     unsigned graphDepth() const; // of the deepest child
     std::size_t singularCount() const { return singular; }
     std::size_t bytes() const;
@@ -56,19 +59,24 @@ private:
     void describe(const OxrtInstance& instance, OxrtInstanceView& view);
     void gatherNeeds();
     void boundChildren();
+    void boundInstances();
+    RTCBounds boundsOf(std::uint32_t number, unsigned step) const;
     static void boundInstance(const RTCBoundsFunctionArguments* arguments);
-    void attachNative(const EmbreeLibrary& embree, RTCDevice device, RTCScene scene, bool updatable) const;
-    void attachOwn(const EmbreeLibrary& embree, RTCDevice device, RTCScene scene, bool updatable);
+    void attachNative(const EmbreeLibrary& embree, RTCDevice device, RTCScene scene, RTCBuildQuality quality) const;
+    void attachOwn(const EmbreeLibrary& embree, RTCDevice device, RTCScene scene, RTCBuildQuality quality);
     unsigned timeSteps() const;
 
     Array<OxrtInstanceView> views;
     Array<OxrtTraversableView> ownTraversables; // what an instance's handle leads to
     Array<std::uint32_t> childNumbers;          // of each instance
     Array<std::uint8_t> usable;                 // 0: no child, or a transform that nothing survives
+    Array<float> ownBoxes;                      // 6 floats for each of ours that does not move by itself
     std::vector<Child> children;
     const OxrtMotionOptions motion;
+    const bool mayBeNative;
     bool native = true;
     bool keepsUnusable = false;
+    bool needsBoxes = false;
     std::uint32_t sceneNeeds = 0;
     std::size_t singular = 0;
 };

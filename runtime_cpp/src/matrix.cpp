@@ -18,6 +18,41 @@ Interval product(const Interval& a, const Interval& b)
     const double corners[4] = {a.lower * b.lower, a.lower * b.upper, a.upper * b.lower, a.upper * b.upper};
     return {*std::min_element(corners, corners + 4), *std::max_element(corners, corners + 4)};
 }
+Interval product(double a, const Interval& b)
+{
+    return {std::min(a * b.lower, a * b.upper), std::max(a * b.lower, a * b.upper)};
+}
+
+Interval intervalOf(const Interval& a)
+{
+    return a;
+}
+Interval intervalOf(double a)
+{
+    return {a, a};
+}
+
+// Of a matrix of intervals or of numbers.
+template <class Element>
+RTCBounds image(const Element* matrix, const RTCBounds& bounds)
+{
+    if (isEmpty(bounds)) return emptyBounds();
+    const Interval box[3] = {{bounds.lower_x, bounds.upper_x}, {bounds.lower_y, bounds.upper_y}, {bounds.lower_z, bounds.upper_z}};
+    Interval rows[3];
+    for (int row = 0; row < 3; ++row) {
+        Interval sum = intervalOf(matrix[4 * row + 3]);
+        double largest = std::max(std::fabs(sum.lower), std::fabs(sum.upper));
+        for (int column = 0; column < 3; ++column) {
+            const Interval term = product(matrix[4 * row + column], box[column]);
+            sum = {sum.lower + term.lower, sum.upper + term.upper};
+            largest = std::max(largest, std::max(std::fabs(term.lower), std::fabs(term.upper)));
+        }
+        rows[row] = {std::max(sum.lower - rounding * largest, -farthest), std::min(sum.upper + rounding * largest, farthest)};
+    }
+    const auto asFloat = [](double value) { return static_cast<float>(value); };
+    return {asFloat(rows[0].lower), asFloat(rows[1].lower), asFloat(rows[2].lower), 0,
+            asFloat(rows[0].upper), asFloat(rows[1].upper), asFloat(rows[2].upper), 0};
+}
 
 } // namespace
 
@@ -68,32 +103,12 @@ void extend(RTCBounds& bounds, const RTCBounds& other)
 
 RTCBounds imageOf(const Interval (&matrix)[12], const RTCBounds& bounds)
 {
-    if (isEmpty(bounds)) return emptyBounds();
-    const Interval box[3] = {{bounds.lower_x, bounds.upper_x}, {bounds.lower_y, bounds.upper_y}, {bounds.lower_z, bounds.upper_z}};
-    double lower[3];
-    double upper[3];
-    for (int row = 0; row < 3; ++row) {
-        lower[row] = matrix[4 * row + 3].lower;
-        upper[row] = matrix[4 * row + 3].upper;
-        double largest = std::max(std::fabs(lower[row]), std::fabs(upper[row]));
-        for (int column = 0; column < 3; ++column) {
-            const Interval term = product(matrix[4 * row + column], box[column]);
-            lower[row] += term.lower;
-            upper[row] += term.upper;
-            largest = std::max({largest, std::fabs(term.lower), std::fabs(term.upper)});
-        }
-        lower[row] = std::max(lower[row] - rounding * largest, -farthest);
-        upper[row] = std::min(upper[row] + rounding * largest, farthest);
-    }
-    const auto asFloat = [](double value) { return static_cast<float>(value); };
-    return {asFloat(lower[0]), asFloat(lower[1]), asFloat(lower[2]), 0, asFloat(upper[0]), asFloat(upper[1]), asFloat(upper[2]), 0};
+    return image(matrix, bounds);
 }
 
 RTCBounds imageOf(const float* matrix, const RTCBounds& bounds)
 {
-    Interval exact[12];
-    for (int i = 0; i < 12; ++i) exact[i] = {matrix[i], matrix[i]};
-    return imageOf(exact, bounds);
+    return image(matrix, bounds);
 }
 
 } // namespace oxrt

@@ -2,6 +2,7 @@
 #include "own_shape.h"
 
 #include "embree_library.h"
+#include "matrix.h"
 
 #include <algorithm>
 #include <cmath>
@@ -106,6 +107,12 @@ KeyPosition keyPosition(std::uint32_t keyCount, float time)
     const float position = std::clamp(time, 0.0f, 1.0f) * static_cast<float>(keyCount - 1);
     const std::uint32_t key = std::min(static_cast<std::uint32_t>(position), keyCount - 2);
     return {key, position - static_cast<float>(key)};
+}
+
+const RTCBounds& kept(const OxrtGeometry& view, std::uint32_t primitive, const RTCBounds& bounds)
+{
+    if (view.boxes) storeBox(bounds, const_cast<float*>(view.boxes) + 6 * std::size_t(primitive));
+    return bounds;
 }
 
 void setOwnShape(const EmbreeLibrary& embree, RTCGeometry geometry, OxrtGeometry& view, const OxrtOwnShape& shape, RTCBoundsFunction bounds,

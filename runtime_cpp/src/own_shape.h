@@ -2,6 +2,7 @@
 #pragma once
 
 #include "curve_basis.h"
+#include "oxrt/device_box.h"
 #include "oxrt/embree.h"
 #include "oxrt/pipeline.h"
 
@@ -30,6 +31,13 @@ class LaneHits {
 public:
     LaneHits(const RTCIntersectFunctionNArguments& callback, unsigned lane, OwnFilter filter);
     LaneHits(const RTCOccludedFunctionNArguments& callback, unsigned lane, OwnFilter filter);
+    // False if the ray misses the primitive's box.
+    bool mayMeet(const OxrtGeometry& view, unsigned primitive) const
+    {
+        if (!view.boxes) return true;
+        const float* const box = view.boxes + 6 * std::size_t(primitive);
+        return meetsBox(quadAt(&ray.origin.x), quadAt(&ray.direction.x), box, ray.tnear, ray.tfar);
+    }
     // True while the ray goes on. Hits outside of the ray's interval are dropped.
     bool offer(const LaneHit& hit);
 
@@ -60,14 +68,18 @@ template <auto F, class Callback>
 void eachLane(const void* given, OwnFilter filter)
 {
     const auto& callback = *static_cast<const Callback*>(given);
+    const auto& view = *static_cast<const OxrtGeometry*>(callback.geometryUserPtr);
     for (unsigned lane = 0; lane < callback.N; ++lane)
         if (callback.valid[lane] == -1) {
             LaneHits hits(callback, lane, filter);
-            F(*static_cast<const OxrtGeometry*>(callback.geometryUserPtr), callback.geomID, callback.primID, hits);
+            if (hits.mayMeet(view, callback.primID)) F(view, callback.geomID, callback.primID, hits);
         }
 }
 template <auto F>
 inline constexpr OxrtOwnShape ownShapeOf = {eachLane<F, RTCIntersectFunctionNArguments>, eachLane<F, RTCOccludedFunctionNArguments>};
+
+// Keeps the box of a primitive for the kernels, where they need it.
+const RTCBounds& kept(const OxrtGeometry& view, std::uint32_t primitive, const RTCBounds& bounds);
 
 struct EmbreeLibrary;
 

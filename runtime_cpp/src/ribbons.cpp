@@ -9,6 +9,7 @@
 
 #include <cmath>
 #include <cstdint>
+#include <vector>
 
 namespace oxrt {
 
@@ -116,7 +117,7 @@ void intersectRibbon(const OxrtGeometry& view, unsigned geometry, unsigned primi
 void ribbonBounds(const RTCBoundsFunctionArguments* arguments)
 {
     const auto& view = *static_cast<const OxrtGeometry*>(arguments->geometryUserPtr);
-    *arguments->bounds_o = segmentBounds(view, arguments->primID, arguments->timeStep);
+    *arguments->bounds_o = kept(view, arguments->primID, segmentBounds(view, arguments->primID, arguments->timeStep));
 }
 
 class Ribbons final : public Shape {
@@ -143,6 +144,7 @@ public:
         return geometry;
     }
     void refit(const EmbreeLibrary&, RTCGeometry) const override {}
+    bool isOwn() const override { return true; }
     std::size_t bytes() const override { return curves.bytes() + widths.bytes(); }
 
     RTCBounds boundsAt(const OxrtGeometry& view, std::uint32_t primitive, std::uint32_t key) const override

@@ -143,7 +143,7 @@ void intersectSegment(const OxrtGeometry& view, unsigned geometry, unsigned prim
 void segmentBoundsOf(const RTCBoundsFunctionArguments* arguments)
 {
     const auto& view = *static_cast<const OxrtGeometry*>(arguments->geometryUserPtr);
-    *arguments->bounds_o = segmentBounds(view, arguments->primID, arguments->timeStep);
+    *arguments->bounds_o = kept(view, arguments->primID, segmentBounds(view, arguments->primID, arguments->timeStep));
 }
 
 class RoundedCurves final : public Shape {
@@ -166,6 +166,7 @@ public:
         return geometry;
     }
     void refit(const EmbreeLibrary&, RTCGeometry) const override {}
+    bool isOwn() const override { return true; }
     std::size_t bytes() const override { return curves.bytes() + caps.ends.size() * sizeof(CurveEnd); }
     RTCBounds boundsAt(const OxrtGeometry& view, std::uint32_t primitive, std::uint32_t key) const override
     {

@@ -26,6 +26,8 @@ public:
     // Tells Embree that the coordinates have changed.
     virtual void refit(const EmbreeLibrary& embree, RTCGeometry geometry) const = 0;
     virtual std::size_t bytes() const = 0;
+    // Whether it is user geometry, which the runtime intersects by itself.
+    virtual bool isOwn() const { return false; }
     // A box around one primitive at one motion key.
     virtual RTCBounds boundsAt(const OxrtGeometry& view, std::uint32_t primitive, std::uint32_t key) const = 0;
 

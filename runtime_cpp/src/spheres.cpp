@@ -89,7 +89,8 @@ public:
         for (std::uint32_t key = 0; key < keyCount; ++key)
             for (std::uint64_t i = 0; i < count; ++i) {
                 float* sphere = spheres.data() + floatsPerSphere * (count * key + i);
-                std::copy_n(input.vertices[key] + 3 * i, 3, sphere);
+                const float* const center = input.vertices[key] + 3 * i;
+                for (int axis = 0; axis < 3; ++axis) sphere[axis] = center[axis];
                 const float radius = std::fabs(input.radii[key][input.singleRadius ? 0 : i]);
                 sphere[3] = std::isnan(radius) ? 0.0f : radius; // a hit on radius 0 has no front face, so it is dropped
             }

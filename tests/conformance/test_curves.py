@@ -169,6 +169,22 @@ def test_T202_rocaps_of_constant_width_are_the_tube(harness: Harness) -> None:
         assert closest(b)["hitKind"] == 142
 
 
+@pytest.mark.parametrize("kind", brute_force_curves.ROCAPS)
+def test_X12_normals_of_rocaps_point_away_from_the_axis(harness: Harness, kind: int) -> None:
+    radii = np.float32([0.3, 0.2, 0.25, 0.4])
+    basis = brute_force_curves.BASES[kind]
+    terms = basis @ np.concatenate([np.asarray(POINTS, float), radii[:, None]], axis=1)[: len(basis)]
+    rays = [ray((float(x), float(y), 2.0), (0.1, 0.05, -1.0)) for x in np.linspace(0.0, 4.0, 15) for y in np.linspace(0.0, 3.0, 12)]
+    results = [hit for hit in zip(rays, shoot(harness, curves(kind, POINTS, radii), *rays), strict=True) if not missed(hit[1])]
+    assert len(results) > 8
+    for given, result in results:
+        hit = closest(result)
+        axis = np.array([hit["u"] ** power for power in range(len(terms))]) @ terms
+        away = np.array(given["in"]["o"]) + hit["tmax"] * np.array(given["in"]["d"]) - axis[:3]
+        normal = np.array(hit["normal"])
+        assert away @ normal == pytest.approx(np.linalg.norm(away) * np.linalg.norm(normal), rel=1e-3)
+
+
 def test_T203_a_negative_radius_leaves_a_rocaps_segment_out(harness: Harness) -> None:
     assert missed(shoot(harness, curves(QUADRATIC_ROCAPS, LINE, (0.1, -0.1, 0.1)), ray((1, 0, 2)))[0])
 
@@ -190,7 +206,7 @@ def test_T205_T232_bad_curves_are_named(harness: Harness) -> None:
         build_([ox.BuildInputCurves(ox.PrimitiveType.SPHERE, points, radii, first)])
 
 
-def test_T206_T208_a_flat_ribbon(harness: Harness) -> None:
+def test_T206_T208_X15_a_flat_ribbon_from_both_sides(harness: Harness) -> None:
     up = [0.0, 0.0, 1.0] * 3
     item = curves(RIBBON, LINE, 0.5, normals=[up])
     on, below, beside = shoot(harness, item, ray((1, 0.25, 2)), ray((1, 0.25, -2), (0, 0, 1)), ray((1, 0.51, 2)))
@@ -199,6 +215,22 @@ def test_T206_T208_a_flat_ribbon(harness: Harness) -> None:
         assert hit["normal"] == pytest.approx([0, 0, 1])
     assert missed(beside)
     assert missed(shoot(harness, item, ray((-1, 0, 0), (1, 0, 0)))[0])
+
+
+def test_X14_a_ribbon_without_normals_lies_across_its_bend(harness: Harness) -> None:
+    # a bend in the plane z = 0: the ribbon goes along z, so that rays in that plane along the bend's inner normal meet it
+    bend = [(0, 0, 0), (1, 2, 0), (3, 2, 0)]
+    rays = [ray((1.6, -3, z), (0, 1, 0)) for z in (-0.2, 0.0, 0.2, 0.31)]
+    *met, beside = shoot(harness, curves(RIBBON, bend, 0.3), *rays)
+    for result in met:
+        hit = closest(result)
+        tangent = np.array(bend[1]) * (1 - hit["u"]) + (np.array(bend[2]) - bend[1]) * hit["u"] - np.array(bend[0]) * (1 - hit["u"])
+        assert np.dot(hit["normal"], tangent) == pytest.approx(0, abs=1e-5)
+    assert missed(beside)
+    random = np.random.default_rng(14)
+    knotted = random.normal(size=(60, 3))
+    rays = [ray(random.normal(0, 3, 3).tolist(), random.normal(0, 1, 3).tolist()) for _ in range(200)]
+    assert any(not missed(result) for result in shoot(harness, curves(RIBBON, knotted, 0.2, indices=range(58)), *rays))
 
 
 def test_T207_normals_turn_a_ribbon(harness: Harness) -> None:

@@ -75,6 +75,13 @@ def test_T170_keys_and_fractions(harness: Harness) -> None:
     assert found == pytest.approx([0.0, 0.0, 0.4, 1.0, 2.2, 3.0, 3.0], abs=1e-5)
 
 
+def test_X11_as_many_keys_as_embree_takes(harness: Harness) -> None:
+    # one more is refused by name: "more keys than Embree takes" of the impossible scenes
+    steps = [float(key % 5) for key in range(129)]
+    found = heights(harness, [moving_triangle(*steps)], [0.0, 1 / 128, 2.5 / 128, 64.25 / 128, 1.0])
+    assert found == pytest.approx([0.0, 1.0, 2.5, 4.0 - 0.25 * 4.0, 3.0], abs=1e-4)
+
+
 def test_T171_every_traversable_has_its_own_range(harness: Harness) -> None:
     lift = [IDENTITY, [*IDENTITY[:11], 4.0]]
     scene = [moving_triangle(0.0, 1.0), transform("matrixMotion", lift, begin=10.0, end=20.0), ias(instance("moving"))]

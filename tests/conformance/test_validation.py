@@ -220,7 +220,7 @@ GRAPHS: dict[int, dict[str, tuple[Callable[[Checked], Any], int | None]]] = {
 
 @pytest.mark.parametrize("simd", [1, 8, 16])
 @pytest.mark.parametrize("flags", GRAPHS)
-def test_traversables_that_the_graph_flags_leave_out(simd: int, flags: int) -> None:
+def test_X10_traversables_that_the_graph_flags_leave_out(simd: int, flags: int) -> None:
     made = Checked(simd, traversable_graph_flags=ox.TraversableGraphFlags(flags))
     for name, (scene, code) in GRAPHS[flags].items():
         rays = made.rays({}, scene(made))
@@ -233,14 +233,32 @@ def test_traversables_that_the_graph_flags_leave_out(simd: int, flags: int) -> N
 
 
 @pytest.mark.parametrize("simd", [1, 8, 16])
-def test_primitives_that_the_type_flags_leave_out(simd: int) -> None:
+def test_X13_primitives_that_the_type_flags_leave_out(simd: int) -> None:
     flags = ox.PrimitiveTypeFlags
     made = Checked(simd, uses_primitive_type_flags=flags.TRIANGLE | flags.SPHERE)
     spheres = made.context.accel_build([ox.BuildInputSpheres(np.float32([[0.25, 0.25, 0]]), np.float32([1.0]))])
     made.check_fine()
     assert made.launch(made.rays({}, spheres)).out.tolist() == [11] * COUNT
     inside = made.context.accel_build([ox.BuildInputInstances([ox.Instance(made.gas), ox.Instance(made.box)])])
-    for scene in (made.box, inside):
+    line = ox.BuildInputCurves(
+        ox.PrimitiveType.ROUND_LINEAR, np.float32([[0, 0, 0], [1, 0, 0]]), np.float32([0.1, 0.1]), np.zeros(1, np.uint32)
+    )
+    for scene in (made.box, inside, made.context.accel_build([line])):
         with pytest.raises(ox.ValidationFailureError, match="uses_primitive_type_flags leave out") as caught:
             made.launch(made.rays({}, scene))
         assert caught.value.fault_code == -8
+
+
+@pytest.mark.parametrize("simd", [1, 8, 16])
+def test_X16_micromaps_that_the_pipeline_does_not_ask_for(simd: int) -> None:
+    for allowed in (False, True):
+        made = Checked(simd, allow_opacity_micromaps=allowed)
+        array = made.context.opacity_micromap_array_build([ox.OpacityMicromap(np.ones(1, np.uint8), 0)])
+        mapped = ox.BuildInputTriangles(CORNERS, opacity_micromap=ox.BuildInputOpacityMicromap(array))
+        accel = made.context.accel_build([mapped])
+        rays = made.rays({}, accel)
+        if allowed:
+            assert made.launch(rays).out.tolist() == [11] * COUNT
+        else:
+            with pytest.raises(ox.ValidationFailureError, match="allow_opacity_micromaps"):
+                made.launch(rays)

@@ -40,9 +40,9 @@ EXPECT(sizeof(OxrtProgramGroupDesc) == 72 && sizeof(OxrtShaderBindingTable) == 6
 
 /* The interface of compiled pipelines. */
 EXPECT(sizeof(OxrtRecordHeader) == OXRT_SBT_RECORD_HEADER_SIZE && offsetof(OxrtRecordHeader, pipelineUid) == 12);
-EXPECT(sizeof(OxrtGeometry) == 112 && offsetof(OxrtGeometry, vertices) == 40 && offsetof(OxrtGeometry, opacityMicromaps) == 64);
+EXPECT(sizeof(OxrtGeometry) == 120 && offsetof(OxrtGeometry, vertices) == 40 && offsetof(OxrtGeometry, opacityMicromaps) == 64);
 EXPECT(sizeof(OxrtInstanceView) == 128 && offsetof(OxrtInstanceView, handle) == 112);
-EXPECT(sizeof(OxrtTraversableView) == 104 && offsetof(OxrtTraversableView, handle) == 40);
+EXPECT(sizeof(OxrtTraversableView) == 112 && offsetof(OxrtTraversableView, handle) == 40);
 EXPECT(sizeof(OxrtTraversableSlot) == 16 && sizeof(OxrtTextureSlot) == 16 && sizeof(OxrtTextureView) == 40);
 EXPECT(sizeof(OxrtTile) == 24 && sizeof(OxrtProgram) == 24 && sizeof(OxrtPipelineVariant) == 24 && sizeof(OxrtPipelineBinary) == 32);
 EXPECT(offsetof(OxrtThread, params) == 8 && offsetof(OxrtThread, index) == 16 && offsetof(OxrtThread, exceptionDetails) == 40);

@@ -302,13 +302,6 @@ class BuildInputInstances(BuildInput):
             self._fill_from_objects(table)
         else:
             self._fill_from_arrays(table)
-        limits = (("instance_id", 1 << 28), ("sbt_offset", 1 << 28), ("visibility_mask", 256))
-        for name, limit in limits:
-            if len(table) and int(table[name].max()) >= limit:
-                raise InvalidValueError(f"{name} {int(table[name].max())} of an instance is not below {limit}")
-        if not np.isfinite(table["transform"]).all():
-            number = int(np.flatnonzero(~np.isfinite(table["transform"]).all(axis=1))[0])
-            raise InvalidValueError(f"the transform of instance {number} holds a value that is not finite")
         target.type = library.lib().OXRT_BUILD_INPUT_INSTANCES
         target.numSbtRecords = 1
         target.numKeys = 1
@@ -324,6 +317,8 @@ class BuildInputInstances(BuildInput):
             members = (one.instance_id, one.sbt_offset, one.visibility_mask, one.flags)
             if any(not isinstance(member, int | np.integer) or not 0 <= member < 1 << 32 for member in members):
                 raise InvalidValueError(f"members of an instance are whole numbers of 32 bits, not {one!r}")
+            for name, member in zip(_MEMBERS, members, strict=True):
+                _check_member(name, int(member))
             row["transform"] = _IDENTITY if one.transform is None else take_transform(one.transform, "Instance.transform").ravel()
             row["instance_id"], row["sbt_offset"], row["visibility_mask"], row["flags"] = members
             row["traversable"] = take_handle(one.traversable, "Instance.traversable")
@@ -349,7 +344,17 @@ class BuildInputInstances(BuildInput):
             fits = values.dtype.kind in "iu" and values.ndim == 1 and values.size in (1, count)
             if not fits or (values.size and not 0 <= int(values.min()) <= int(values.max()) < WORD_LIMIT):
                 raise InvalidValueError(f"{name} of instances is one whole number or {count} of them, not {given!r:.60}")
-            table[name] = values
+            if given is not None and values.size:
+                _check_member(name, int(values.max()))
+            table[name] = values.astype(np.uint32)
+
+
+_MEMBERS = {"instance_id": 1 << 28, "sbt_offset": 1 << 28, "visibility_mask": 256, "flags": WORD_LIMIT}
+
+
+def _check_member(name: str, value: int) -> None:
+    if value >= _MEMBERS[name]:
+        raise InvalidValueError(f"{name} {value} of an instance is not below {_MEMBERS[name]}")
 
 
 def take_handle(value: Any, where: str) -> int:

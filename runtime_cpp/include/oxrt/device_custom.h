@@ -7,43 +7,21 @@
 namespace oxrt {
 inline namespace OXRT_ISA {
 
-/* Whether the ray meets a box inside its interval, faces included; in doubt it does. Embree calls back without this test where a scene
-   holds one primitive, or was built fast, with several in a leaf. */
-OXRT_INLINE bool meetsBox(const RTCRay& ray, const float* box, float tmin, float tmax) {
-    const float origin[3] = {ray.org_x, ray.org_y, ray.org_z};
-    const float direction[3] = {ray.dir_x, ray.dir_y, ray.dir_z};
-    float enter = tmin;
-    float leave = tmax;
-    for (int axis = 0; axis < 3; ++axis) {
-        if (direction[axis] == 0.0f) {
-            if (origin[axis] < box[axis] || origin[axis] > box[axis + 3])
-                return false;
-            continue;
-        }
-        const float a = (box[axis] - origin[axis]) / direction[axis];
-        const float b = (box[axis + 3] - origin[axis]) / direction[axis];
-        const float near = a < b ? a : b;
-        const float far = a < b ? b : a;
-        enter = near > enter ? near : enter;
-        leave = far < leave ? far : leave;
-    }
-    constexpr float rounding = 1e-6f;
-    return !(enter > leave + rounding * __builtin_fabsf(leave));
-}
-
 /* Runs the intersection program of a custom primitive that Embree offers. `hit` is null in occlusion queries. */
 template <class Programs> OXRT_INLINE void runIntersection(Ray& ray, RTCRay& embreeRay, RTCHit* hit, const void* geometry, uint32_t geometryId, uint32_t primitive) {
     if (ray.isTerminated)
         return;
-    locate(ray, ray.context.instID[0], static_cast<const OxrtGeometry*>(geometry), primitive);
+    if (embreeRay.tfar != ray.closestInEmbree)
+        ray.closest = ray.closestInEmbree = embreeRay.tfar;
+    const OxrtGeometry& own = *static_cast<const OxrtGeometry*>(geometry);
+    if (own.hasUntestedBoxes && !meetsBox(quadAt(&embreeRay.org_x), quadAt(&embreeRay.dir_x), own.vertices + 6 * uint64_t(primitive), ray.tmin,
+                                          ray.closest))
+        return;
+    locate(ray, ray.context.instID[0], &own, primitive);
     ray.embreeRay = &embreeRay;
     ray.embreeHit = hit;
     ray.embreeGeometry = geometryId;
     ray.objectRay = &embreeRay;
-    if (embreeRay.tfar != ray.closestInEmbree)
-        ray.closest = ray.closestInEmbree = embreeRay.tfar;
-    if (ray.geometry->hasUntestedBoxes && !meetsBox(embreeRay, ray.geometry->vertices + 6 * uint64_t(primitive), ray.tmin, ray.closest))
-        return;
     if (Programs::hasAnyHit || (ray.flags & RAY_CULL_ANY)) {
         const uint32_t instanceFlags = ray.instance ? ray.instance->flags : 0;
         const uint32_t geometryFlags = ray.geometry->recordFlags[localRecord(ray)];

@@ -95,6 +95,9 @@ template <class Programs, bool ANY, class Outer>
 OXRT_INLINE void enterInstance(GraphWalk& walk, uint32_t index, const RTCRay& parent, Outer& outer) {
     const OxrtTraversableView& structure = *walk.path.structure;
     const OxrtInstanceView& instance = structure.instances[index];
+    if (structure.instanceBoxes && !meetsBox(quadAt(&parent.org_x), quadAt(&parent.dir_x), structure.instanceBoxes + 6 * uint64_t(index),
+                                             parent.tnear, parent.tfar))
+        return;
     if (!(instance.visibilityMask & walk.ray.mask) || !instance.child || !instance.child->scene || walk.ray.isTerminated)
         return;
     const Columns inverse = columnsOf(instance.worldToObject);

@@ -2,6 +2,7 @@
 #ifndef OXRT_DEVICE_MOTION_H
 #define OXRT_DEVICE_MOTION_H
 
+#include <oxrt/device_box.h>
 #include <oxrt/device_thread.h>
 
 namespace oxrt {
@@ -45,14 +46,6 @@ OXRT_INLINE Affine composed(const Affine& outer, const Affine& inner) {
     return result;
 }
 
-/* Four numbers in a register: of points and vectors the fourth says nothing. */
-using Quad = float __attribute__((vector_size(16), may_alias, aligned(4)));
-
-OXRT_INLINE Quad quadAt(const float* numbers) {
-    Quad quad;
-    __builtin_memcpy(&quad, numbers, sizeof(quad));
-    return quad;
-}
 template <int LANE> OXRT_INLINE Quad spread(Quad quad) { return __builtin_shufflevector(quad, quad, LANE, LANE, LANE, LANE); }
 OXRT_INLINE Quad crossed(Quad a, Quad b) {
     return __builtin_shufflevector(a, a, 1, 2, 0, 3) * __builtin_shufflevector(b, b, 2, 0, 1, 3) -

@@ -106,6 +106,9 @@ template <class Programs> __attribute__((noinline)) void checkRay(const Ray& ray
         fault(thread, OXRT_FAULT_TRAVERSAL_DEPTH, "the graph is deeper than max_traversable_graph_depth of set_stack_size()", place);
     else if (ray.root && (ray.root->needs & Programs::excludedNeeds))
         fault(thread, OXRT_FAULT_PRIMITIVE_TYPE, "the scene holds primitives that the pipeline's uses_primitive_type_flags leave out", place);
+    else if (!Programs::usesMicromaps && ray.root && (ray.root->needs & OXRT_SCENE_HAS_MICROMAPS))
+        fault(thread, OXRT_FAULT_INVALID_TRAVERSABLE,
+              "the scene has opacity micromaps, but the pipeline was made without allow_opacity_micromaps", place);
 }
 
 template <class Programs> OXRT_INLINE void runMiss(Ray& ray, typename Programs::Payload& payload, Place place) {

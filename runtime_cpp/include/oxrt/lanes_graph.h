@@ -155,9 +155,15 @@ OXRT_INLINE void enterInstance(GraphPacketWalk<W>& walk, uint32_t index, Lanes<b
     mask &= (walk.mask & instance.visibilityMask) != 0u;
     if (none(mask) || !instance.child || !instance.child->scene)
         return;
-    const float* m = instance.worldToObject;
     const Wide<float3, W> worldDirection = {packetLanes<W>(parent.dir_x), packetLanes<W>(parent.dir_y), packetLanes<W>(parent.dir_z)};
     const Wide<float3, W> worldOrigin = {packetLanes<W>(parent.org_x), packetLanes<W>(parent.org_y), packetLanes<W>(parent.org_z)};
+    if (structure.instanceBoxes) {
+        mask &= meetingBox<W>(worldOrigin, inverseOf(worldDirection), structure.instanceBoxes + 6 * uint64_t(index),
+                              packetLanes<W>(parent.tnear), packetLanes<W>(parent.tfar));
+        if (none(mask))
+            return;
+    }
+    const float* m = instance.worldToObject;
     const Wide<float3, W> direction = vectorThrough(m, worldDirection);
     mask = without(mask, (direction.x == 0.0f) & (direction.y == 0.0f) & (direction.z == 0.0f));
     GraphPath& path = walk.path;

@@ -13,7 +13,9 @@ template <int W> OXRT_INLINE Lanes<int32_t, W> wholePart(Lanes<float, W> x) { re
 /* Where the micromaps of the lanes' primitives are, the states of lanes, the words of lanes; of one geometry or of several. */
 template <int W> struct CommonMicromaps {
     const OxrtGeometry& geometry;
-    OXRT_INLINE auto maps(Lanes<uint32_t, W> primitive) const { return placesIn<OxrtMicromapView, W>(geometry.opacityMicromaps, primitive); }
+    OXRT_INLINE auto maps(Lanes<uint32_t, W> primitive) const {
+        return placesIn<OxrtMicromapView, W>(geometry.opacityMicromaps, primitive);
+    }
     OXRT_INLINE auto states(Lanes<uint32_t, W> word) const { return placesIn<uint32_t, W>(geometry.micromapStates, word); }
 };
 template <int W> struct MicromapLanes {
@@ -25,7 +27,8 @@ template <int W> struct MicromapLanes {
 };
 
 /* OXRT_OPACITY_...: of the points of the primitives that were hit. */
-template <class Micromaps, int W> OXRT_INLINE Lanes<uint32_t, W> opacityAt(const Micromaps& micromaps, const RayLanes<W>& ray, Lanes<bool, W> mask) {
+template <class Micromaps, int W>
+OXRT_INLINE Lanes<uint32_t, W> opacityAt(const Micromaps& micromaps, const RayLanes<W>& ray, Lanes<bool, W> mask) {
     const auto& hit = ray.packet.hit;
     const auto maps = micromaps.maps(packetLanes<W>(hit.primID));
     const Lanes<uint32_t, W> firstWord = gather<uint32_t, W>(maps, OXRT_FIELD_OFFSET(OxrtMicromapView, firstWord), mask);

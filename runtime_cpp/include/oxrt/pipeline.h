@@ -13,7 +13,7 @@
 extern "C" {
 #endif
 
-enum { OXRT_PIPELINE_ABI = 6 };
+enum { OXRT_PIPELINE_ABI = 7 };
 
 /* ---- SBT records -------------------------------------------------------------------------------------------------------------- */
 
@@ -76,6 +76,7 @@ typedef struct OxrtGeometry {
     const OxrtOwnShape* ownShape;  /* not NULL: Embree's intersection callbacks hand over to it */
     const float* widths;           /* ribbons: 8 floats per primitive and key: unit vectors across, at the beginning and at the end of each
                                       segment, and how much of the way along the axis is added from the one and from the other */
+    const float* boxes;            /* 6 floats per primitive where Embree offers primitives whose boxes a ray misses; else NULL */
     uint32_t hasEndcaps;           /* curves */
     uint32_t hasUntestedBoxes;     /* custom primitives at rest that Embree offers without a look at each box: the only one, or built fast */
     const void* shape;             /* the runtime's own */
@@ -117,6 +118,7 @@ typedef struct OxrtTraversableView {
     const struct OxrtTraversableView* child; /* transforms */
     const float* transformKeys;              /* static: matrix and inverse, 12 floats each; matrix motion: 12 per key; SRT motion: 16 */
     const struct OxrtTraversableView* instanceTraversables; /* IAS: what the handle of each instance leads to */
+    const float* instanceBoxes; /* as the boxes of an OxrtGeometry */
     uint32_t hasNativeInstances; /* IAS: `scene` holds Embree's instances, else one user geometry with a primitive for each instance */
     uint32_t buildFlags;
     uint32_t graphDepth; /* traversables on the longest way down, this one included */
