@@ -34,7 +34,7 @@ OXRT_INLINE bool meetsBox(Quad origin, Quad direction, const float* box, float t
         leave = far[axis] < leave ? far[axis] : leave;
     }
     constexpr float rounding = 1e-6f;
-    return !(enter > leave + rounding * __builtin_fabsf(leave));
+    return !(enter > leave * (leave < 0.0f ? 1.0f - rounding : 1.0f + rounding)); /* no sum, since it may be infinite */
 }
 
 }  // namespace OXRT_ISA

@@ -34,7 +34,7 @@ OXRT_INLINE Lanes<bool, W> meetingBox(const Wide<float3, W>& origin, const Wide<
         leave = minimum(maximum(a, b), leave);
     }
     constexpr float rounding = 1e-6f;
-    return !(enter > leave + rounding * abs(leave));
+    return !(enter > leave * select(leave < 0.0f, 1.0f - rounding, 1.0f + rounding));
 }
 
 /* Enters what the getters over lanes read of the primitive. Its instance and geometry come as values: read again from the scalar ray, where they
