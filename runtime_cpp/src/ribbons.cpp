@@ -156,11 +156,12 @@ private:
     void computeWidths(const OxrtBuildInput& input)
     {
         for (std::uint32_t key = 0; key < curves.keyCount; ++key) {
-            if (input.normals)
+            if (input.normals) {
                 alongNormals(input.normals[key], key);
-            else
+                alignSides(input.normals[key], key);
+            } else {
                 alongStrands(key);
-            alignSides(key);
+            }
             leanAcross(key);
         }
     }
@@ -199,8 +200,9 @@ private:
         return dot3(across, across) > 0 ? across : anyAcross(tangent);
     }
 
-    // The sides must not swap along a strand; a border at right angles to the one before it counts as swapped, as OptiX has it.
-    void alignSides(std::uint32_t key)
+    // The sides must not swap along a strand, where the caller's normals do not swap; a border at right angles to the one before it counts
+    // as swapped, as OptiX has it.
+    void alignSides(const float* normals, std::uint32_t key)
     {
         float sign = 1;
         Point4 before;
@@ -212,7 +214,11 @@ private:
             }
             const Point4 own[2] = {before, pointOf(width + 3)}; // the border that two segments share is the first one's
             storePoint(width, own[0] * sign);
-            if (!(dot3(own[0], own[1]) > 0)) sign = -sign;
+            const float* up = normals + 3 * curves.firsts[i];
+            if (!(dot3(pointOf(up), pointOf(up + 3)) > 0))
+                sign = 1;
+            else if (!(dot3(own[0], own[1]) > 0))
+                sign = -sign;
             storePoint(width + 3, own[1] * sign);
             before = own[1];
         }

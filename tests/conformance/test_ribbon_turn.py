@@ -42,6 +42,14 @@ RECORDED: list[tuple[str, list[tuple[float, ...]], list[tuple[float, ...]]]] = [
     ("straight down", [(0, 0, -0), (0, 0, -1), (0, 0, -2), (0, 0, -3), (0, 0, -4)], [(1, -0, 0), (1, -0, 0), (1, -0, 0), (1, -0, 0)]),
 ]
 
+# a strand whose normals swap where it bends sharply; recorded like the others
+SWAPPING_POINTS = [(-0.2150334, -1.163199, 0.3800486), (-2.085107, -1.942502, 1.128806), (-2.009658, -2.433467, 2.079546), (-3.048292,
+    -2.148766, 1.58166), (-3.895662, -1.68537, 0.5887808), (-1.993656, -2.270087, 2.578601), (-3.087627, -1.664136, 1.379025)]
+SWAPPING_NORMALS = [(-0.8875564, 0.1056936, 0.448411), (-0.6658756, 0.6187848, -0.4167913), (0.182837, 0.5291588, 0.8285902),
+    (-0.7239195, 0.6517416, 0.2262155), (-0.2101882, -0.5057998, -0.8366526), (-0.9042535, 0.3619466, -0.2265399), (-0.5654445,
+    -0.2633215, 0.7816229)]
+SWAPPING_RECORDED = [(-0.5614102, 1.979207, 0.6577862), (-0.9256018, 0.4482455, 0.3049295), (-0.1931177, 0.7962256, 0.8581579),
+    (-0.6692784, 0.774884, 0.9328467), (0.7766622, -2.302624, -1.419023), (-1.216552, 0.2107981, 1.215935)]
 
 @pytest.mark.parametrize(("points", "recorded"), [row[1:] for row in RECORDED], ids=[row[0] for row in RECORDED])
 def test_recorded_normals_of_ribbons_without_normals(
@@ -50,6 +58,12 @@ def test_recorded_normals_of_ribbons_without_normals(
     found = _normals(harness, np.array(points, np.float32), [len(points) - 2])
     sizes = np.linalg.norm(recorded, axis=1, keepdims=True)
     assert np.abs((found - recorded) / sizes).max() < RIBBON_NORMAL
+
+
+def test_sides_swap_where_the_given_normals_do(harness: Harness) -> None:
+    found = _normals(harness, np.array(SWAPPING_POINTS, np.float32), [len(SWAPPING_POINTS) - 2], np.array(SWAPPING_NORMALS, np.float32))
+    sizes = np.linalg.norm(SWAPPING_RECORDED, axis=1, keepdims=True)
+    assert np.abs((found - SWAPPING_RECORDED) / sizes).max() < RIBBON_NORMAL
 
 
 def test_strands_of_one_input_do_not_turn_each_other(harness: Harness) -> None:
@@ -64,14 +78,15 @@ def test_a_ribbon_of_equal_points_has_finite_normals(harness: Harness) -> None:
     assert np.isfinite(_normals(harness, points, [5])).all()
 
 
-def _normals(harness: Harness, points: np.ndarray, segments: list[int]) -> np.ndarray:
+def _normals(harness: Harness, points: np.ndarray, segments: list[int], given: np.ndarray | None = None) -> np.ndarray:
     """Of strands that follow each other in the array of points."""
     firsts, asked = [], []
     for count in segments:
         start, first = len(firsts), firsts[-1] + 3 if firsts else 0
         firsts += range(first, first + count)
         asked += [(start + i, 0.0) for i in range(count)] + [(start + count - 1, 1.0)]
-    curves = ox.BuildInputCurves(ox.PrimitiveType.FLAT_QUADRATIC_BSPLINE, points, 0.1, np.array(firsts, np.uint32))
+    curves = ox.BuildInputCurves(ox.PrimitiveType.FLAT_QUADRATIC_BSPLINE, points, 0.1, np.array(firsts, np.uint32),
+                                 normals=given)
     gas = harness.context.accel_build([curves], build_flags=ox.BuildFlags.ALLOW_RANDOM_VERTEX_ACCESS)
     module = harness.module("curve_access.py")
     raygen = harness.kept.setdefault("curve access", harness.context.program_group_create(raygen=module["__raygen__points"]))
