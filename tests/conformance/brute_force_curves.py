@@ -103,7 +103,9 @@ def segments(scene: list[dict[str, Any]], given: dict[str, Any], primitive: int)
 
 
 def is_on_curve(scene: list[dict[str, Any]], given: dict[str, Any], event: dict[str, Any]) -> bool:
-    """Whether the hit of an event lies on the tube, or on a disc at its end."""
+    """Whether the hit of an event lies on the tube, or on a disc at its end; a hit of another kind of primitive does not."""
+    if "u" not in event:
+        return False
     for segment in segments(scene, given, event["prim"]):
         u, t = float(event["u"]), float(event["tmax"])
         point, axis = segment.origin + t * segment.direction, segment.at(u)

@@ -7,6 +7,8 @@ from typing import Any
 import brute_force_curves
 import numpy as np
 from brute_force_curves import LINEAR, RIBBON, ROCAPS, Segment
+from curve_reference import STEPS
+from oracle_compare import FIRST_CURVE_KIND, LAST_CURVE_KIND, SPHERE_KIND
 from oracle_files import Probe
 
 STRAIGHT_JOINT = "joints of straight strands"
@@ -18,6 +20,7 @@ CONE_END = "parameter at the end of a cone"
 SECOND_CROSSING = "second crossing of a segment"
 INTERNAL = "surfaces inside of linear strands"
 ROCAPS_ACCURACY = "accuracy of rocaps"
+INNER_CAP = "caps inside of strands"
 
 REASONS = {
     STRAIGHT_JOINT: "rays exactly at u = 0 or 1 of straight strands slip through there (notes of group 11); here they hit",
@@ -32,6 +35,8 @@ REASONS = {
     INTERNAL: "segments of linear strands are met from inside of their neighbours there (notes of group 11); here joints are one surface",
     ROCAPS_ACCURACY: "the recorded hits lie off the swept spheres by up to 5e-4, which bent and grazed strands turn into "
     "more along the ray",
+    INNER_CAP: "with end caps every segment is closed there, and a ray inside of a strand meets the discs between its segments; here "
+    "strands are closed at their two ends",
     SECOND_CROSSING: "OptiX does not promise every crossing of one segment, and records one; here each is offered",
 }
 # A parameter this near to 0 or 1 is at the end of a segment.
@@ -41,11 +46,14 @@ CAP_SPREAD, TUBE_SPREAD = 0.1, 0.05
 # The growth of a radius along a segment that is more than rounding, of the radius.
 GROWTH = 1e-6
 CURVE_TYPES = frozenset(brute_force_curves.BASES)
+CURVE_KINDS = frozenset(range(FIRST_CURVE_KIND, LAST_CURVE_KIND + 1)) - {SPHERE_KIND}
 
 
 def curve_difference(probe: Probe, given: dict[str, Any], ours: list[dict[str, Any]], theirs: list[dict[str, Any]]) -> str | None:
     """The difference that leaves a ray's hits open, None if there is none or no curve was hit."""
-    hits = [event for event in ours + theirs if event["ev"] in ("AH", "CH")]
+    hits = [event for event in ours + theirs if event["ev"] in ("AH", "CH") and event["hitKind"] in CURVE_KINDS]
+    if any(_is_inner_cap(probe, event) for event in theirs if event in hits):
+        return INNER_CAP
     met = [(event, segment) for event in hits for segment in brute_force_curves.segments(probe.scene, given, event["prim"])]
     if met and all(segment.curve_type in ROCAPS for _, segment in met) and _same_primitives(ours, theirs) and (name := _of_rocaps(
         probe, given, hits, met[0][1])):
@@ -99,6 +107,18 @@ def _of_hit(event: dict[str, Any], segment: Segment) -> str | None:
     if segment.is_straight() and (u <= AT_END or u >= 1.0 - AT_END):
         return CONE_END if u == 1.0 and abs(segment.slope(1.0)[3]) > GROWTH * segment.at(1.0)[3] else STRAIGHT_JOINT
     return TOO_THICK if segment.is_thick() else None
+
+
+def _is_inner_cap(probe: Probe, event: dict[str, Any]) -> bool:
+    """Whether the event is a hit exactly at the end of a segment behind which its strand goes on."""
+    u = float(event["u"])
+    for item in (item for node in probe.scene for item in node.get("buildInputs", []) if item["type"] == "curves" and item["endcapFlags"]):
+        index = event["prim"] - int(item.get("primitiveIndexOffset", 0))
+        if u in (0.0, 1.0) and 0 <= index < len(item["indices"]):
+            step = STEPS.get(int(item["curveType"], 16), 1)
+            if item["indices"][index] + (step if u else -step) in item["indices"]:
+                return True
+    return False
 
 
 def _has_caps(probe: Probe) -> bool:
