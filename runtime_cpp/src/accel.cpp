@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <cstdint>
 #include <limits>
 #include <utility>
@@ -223,6 +224,30 @@ bool Accel::isBuiltFast() const
     return isRefitted() || ((buildFlags & OXRT_BUILD_FLAG_PREFER_FAST_BUILD) && !holdsMovingBoxes);
 }
 
+// One over the mean area of some of the triangles, evenly spread over all; 0 without any.
+static float densityOf(std::span<const OxrtGeometry> geometries)
+{
+    constexpr std::uint32_t samples = 4096;
+    double area = 0.0;
+    std::uint64_t count = 0;
+    for (const OxrtGeometry& geometry : geometries) {
+        if (geometry.primitiveType != OXRT_PRIMITIVE_TRIANGLE) continue;
+        const std::uint32_t step = geometry.primitiveCount / samples + 1;
+        for (std::uint32_t i = 0; i < geometry.primitiveCount; i += step) {
+            const std::uint32_t* corners = geometry.indices + 3 * std::size_t(i);
+            const auto at = [&](std::uint32_t vertex) { return geometry.vertices + 3 * std::size_t(vertex); };
+            const float *a = at(corners[0]), *b = at(corners[1]), *c = at(corners[2]);
+            const double u[3] = {double(b[0]) - a[0], double(b[1]) - a[1], double(b[2]) - a[2]};
+            const double v[3] = {double(c[0]) - a[0], double(c[1]) - a[1], double(c[2]) - a[2]};
+            const double n[3] = {u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]};
+            area += 0.5 * std::sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
+            count++;
+        }
+    }
+    const double density = area > 0.0 ? static_cast<double>(count) / area : 0.0;
+    return std::isfinite(density) ? static_cast<float>(density) : 0.0f;
+}
+
 void Accel::describe()
 {
     view.scene = scene;
@@ -244,6 +269,7 @@ void Accel::describe()
     view.hasNativeInstances = instances && instances->isNative();
     view.graphDepth = instances ? instances->graphDepth() + 1 : 1;
     view.instanceCount = instances ? instances->size() : 0;
+    view.triangleDensity = densityOf(geometryViews);
 }
 
 void Accel::checkSameShape(std::span<const OxrtBuildInput> inputs) const

@@ -152,8 +152,8 @@ template <int W> OXRT_INLINE Lanes<bool, W> loadValid(const int* valid) {
     return loadLanes<int32_t, W>(values) == int32_t(-1);
 }
 
-/* The geometry's, the instance's, the micromap's and the ray's word on culling and any-hit programs: the candidates that are accepted unless
-   their programs object. The active lanes are those whose programs run, their records are known. */
+/* The geometry's, the instance's, the micromap's and the ray's word on culling and any-hit programs: the candidates that are accepted
+   unless their programs object. The active lanes are those whose programs run, their records are known. */
 template <class Programs, bool MAY_CULL, int W>
 OXRT_INLINE Lanes<bool, W> findCandidatePrograms(CandidateLanes<W>& ray, Lanes<bool, W> offered) {
     enterHits(ray, offered);

@@ -19,9 +19,12 @@ enum class Bundle { Coherent, Near, Apart };
 
 /* At least half the lanes, all origins within half the length of the first ray, all directions within 60 degrees of it. Rays that end at
    any hit visit less; theirs may be 80 degrees apart. Measured on ambient occlusion, in strata and without, and on path tracing, whose
-   rays after the first bounce are quickest alone; the angle without the origins, or these without the angle, make some slower by half. */
+   rays after the first bounce are quickest alone; the angle without the origins, or these without the angle, make some slower by half.
+   Coherent packets visit nodes for all rays together. Where triangles are smaller than the distance of the origins, as on a scanned statue,
+   rays that end at any hit and are not nearly parallel have little in common: ambient occlusion there gains 4.6 % as plain packets. */
 template <bool ANY, int W>
-OXRT_INLINE Bundle bundleOf(Lanes<bool, W> mask, const Wide<float3, W>& origin, const Wide<float3, W>& direction, Lanes<float, W> tmax) {
+OXRT_INLINE Bundle bundleOf(Lanes<bool, W> mask, const Wide<float3, W>& origin, const Wide<float3, W>& direction, Lanes<float, W> tmax,
+                            float triangleDensity) {
     if (__builtin_popcount(mask.bits()) < W / 2)
         return Bundle::Apart;
     const int lane = firstLane(mask);
@@ -29,12 +32,16 @@ OXRT_INLINE Bundle bundleOf(Lanes<bool, W> mask, const Wide<float3, W>& origin, 
     const Wide<float3, W> first = spreadLane(direction, lane);
     const Lanes<float, W> reach = 0.5f * spreadLane(tmax, lane);
     const Lanes<float, W> length2 = dot(first, first);
-    if (any(mask & (dot(apart, apart) > reach * reach * length2)))
+    const Lanes<float, W> distance2 = dot(apart, apart);
+    if (any(mask & (distance2 > reach * reach * length2)))
         return Bundle::Apart;
     constexpr float cosine2 = ANY ? 0.03f : 0.25f;
     const Lanes<float, W> cosine = dot(direction, first);
-    const Lanes<bool, W> isAlike = cosine * abs(cosine) > dot(direction, direction) * (cosine2 * length2);
-    return none(without(mask, isAlike)) ? Bundle::Coherent : Bundle::Near;
+    const Lanes<float, W> lengths2 = dot(direction, direction) * length2;
+    if constexpr (ANY)
+        if (any(mask & (distance2 * triangleDensity > 2.25f)) && any(without(mask, cosine * abs(cosine) > lengths2 * 0.8f)))
+            return Bundle::Near;
+    return none(without(mask, cosine * abs(cosine) > lengths2 * cosine2)) ? Bundle::Coherent : Bundle::Near;
 }
 
 /* Nothing is hit. Programs compute in lanes without a hit as well. What lay in memory would often be denormal numbers there, and each operation on one
@@ -216,8 +223,8 @@ OXRT_INLINE Lanes<bool, W> traverseCandidates(RayLanes<W>& ray, Lanes<bool, W> m
         payloadCopy = payload;
     beginCandidates<Programs>(candidates, ray, &payloadCopy, isCoherent);
     if constexpr (mayHaveSoleRecord<Scalar, FlagTraits<Flags>::mayCull>)
-        candidates.soleRecord = candidates.hasCommonRecord ? findSoleRecord(*ray.thread->thread->launch, *ray.root, ray.flags, candidates.commonOffset)
-                                                           : nullptr;
+        candidates.soleRecord =
+            candidates.hasCommonRecord ? findSoleRecord(*ray.thread->thread->launch, *ray.root, ray.flags, candidates.commonOffset) : nullptr;
     if constexpr (!ANY)
         clearHits(ray);
     queryCandidates<Programs, Flags, ANY>(candidates, ray.packet.whole(), mask);

@@ -122,7 +122,7 @@ typedef struct OxrtTraversableView {
     uint32_t hasNativeInstances; /* IAS: `scene` holds Embree's instances, else one user geometry with a primitive for each instance */
     uint32_t buildFlags;
     uint32_t graphDepth; /* traversables on the longest way down, this one included */
-    uint32_t reserved;
+    float triangleDensity; /* GAS: one over the mean area of its triangles, about; 0: not known */
 } OxrtTraversableView;
 
 /* handle = generation << 32 | slot; a handle whose generation is not the slot's is stale. Generation 0 is never used. */
