@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import gc
 import sys
 import time
+import weakref
 from pathlib import Path
 from types import ModuleType
 from typing import Any
@@ -197,6 +199,21 @@ def test_a_file_that_changes_between_module_and_pipeline(tmp_path: Path) -> None
     shader(tmp_path, text=TEXT.replace("float(i))", "float(i)) + 1.0"))
     with pytest.raises(ox.InvalidOperationError, match="changed since module_create"):
         context.pipeline_create([raygen], math="fast")
+
+
+def test_a_pipeline_ends_with_its_last_name(tmp_path: Path) -> None:
+    """Not at some later collection of garbage: its library would stay loaded, and its file in use."""
+    context = ox.DeviceContext()
+    raygen = context.program_group_create(raygen=context.module_create(shader(tmp_path))["__raygen__fill"])
+    gc.disable()
+    try:
+        pipeline = context.pipeline_create([raygen])
+        pipeline.launch(Params(np.zeros(4, np.float32)), ox.ShaderBindingTable(raygen=raygen.record()), 4)
+        left = weakref.ref(pipeline)
+        del pipeline
+        assert left() is None
+    finally:
+        gc.enable()
 
 
 def test_a_damaged_cache_is_compiled_anew(tmp_path: Path) -> None:

@@ -92,12 +92,15 @@ for _ in range(levels):
 out = np.zeros(1, np.int32)
 
 
+told = []
+
+
 def run():
     try:
         ox.interpret(pipeline, Params(out=out, scene=scene), table, 1, 0)
-        print("did", out[0])
+        told.append(f"did {out[0]}")
     except ox.LaunchFailureError as error:
-        print("refused", error)
+        told.append(f"refused {error}")
 
 
 threading.stack_size(kibibytes << 10)
@@ -106,6 +109,7 @@ for thread in threads:
     thread.start()
 for thread in threads:
     thread.join()
+print(*told, sep="\\n")
 '''
 
 

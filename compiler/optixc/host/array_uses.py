@@ -20,13 +20,9 @@ _Use = tuple[tuple[str, ...], str, str | None]
 
 
 class ArrayUses:
-    """What the compiler says about a pipeline: rows of a path (`params`, `record PROGRAM` or `struct NAME`, then fields) and places.
+    """What the compiler says about a pipeline: rows of a path (`params`, `record PROGRAM` or `struct NAME`, then fields) and places."""
 
-    `also` is what else is asked of launch parameters that have changed.
-    """
-
-    def __init__(self, rows: Iterable[Mapping[str, Any]], also: Callable[[Any], None] | None = None) -> None:
-        self._also = also
+    def __init__(self, rows: Iterable[Mapping[str, Any]]) -> None:
         self._of_params: list[_Use] = []
         self._of_records: dict[str, list[_Use]] = {}
         for row in rows:
@@ -37,13 +33,13 @@ class ArrayUses:
         self._written_fields = [(use[0][-1], use[0][:-1]) for use in written if ELEMENT not in use[0]]
         self._written_elements = [use for use in written if ELEMENT in use[0]]
 
-    def check_params(self, params: Any) -> None:
-        """Raises if a launch with these parameters would use an array that is not there, or write a read-only one."""
+    def check_params(self, params: Any, also: Callable[[Any], None]) -> None:
+        """Raises if a launch with these parameters would use an array that is not there, or write a read-only one; asks `also` of
+        parameters that have changed."""
         values = params.__dict__
         if values["_complete_for"] is not self:
             _check_params(params, self._of_params)
-            if self._also is not None:
-                self._also(params)
+            also(params)
             values["_complete_for"] = self
             return
         for name, structs in self._written_fields:

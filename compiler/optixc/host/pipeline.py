@@ -123,7 +123,7 @@ class Pipeline(Owned):
             lanes=int(info.lanes), params_size=int(info.paramsSize), max_trace_depth=int(info.maxTraceDepth), library=path, **report
         )
         self._provide_stack(int(info.stackSize))
-        self._arrays = ArrayUses(self._report.arrays, self._look_at_graphs)
+        self._arrays = ArrayUses(self._report.arrays)
         for group in self._groups:
             group.linked_into(self)
 
@@ -153,7 +153,7 @@ class Pipeline(Owned):
         if type(params) is not self._params_type:
             self._check_params(params)
         if self._params is not None:
-            self._arrays.check_params(params)
+            self._arrays.check_params(params, self._look_at_graphs)
         if type(sbt) is not ShaderBindingTable:
             raise InvalidValueError(f"sbt takes a ShaderBindingTable, not {type(sbt).__name__}")
 
