@@ -36,6 +36,8 @@ BASES = {
 }
 # The recorded hits lie on the curve at their parameter within 1.2e-4 at radii up to 0.5; ours within rounding of t.
 ON_SURFACE = 1e-3
+# The sine of the angle between a ray and a straight strand that it runs along.
+NEARLY = 2e-5
 
 
 @dataclass(frozen=True)
@@ -75,11 +77,16 @@ class Segment:
         axes = np.array([self.at(float(u)) for u in np.linspace(0.0, 1.0, 257)])
         return bool(np.any(np.linalg.norm(axes[:, :3] - point, axis=1) < axes[:, 3] - 1e-4))
 
+    def distance(self, point: Floats) -> float:
+        """How far a point lies outside of the spheres along the segment; below zero inside."""
+        axes = np.array([self.at(float(u)) for u in np.linspace(0.0, 1.0, 1025)])
+        return float((np.linalg.norm(axes[:, :3] - point, axis=1) - axes[:, 3]).min())
+
     def is_parallel(self) -> bool:
-        """Whether the control points lie on a line that the ray is parallel to."""
+        """Whether the control points lie on a line that the ray is parallel to, or nearly."""
         steps = np.diff(self.points, axis=0)
         direction = self.direction / np.linalg.norm(self.direction)
-        return all(float(np.linalg.norm(np.cross(step, direction))) < 1e-6 * max(1e-30, float(np.linalg.norm(step))) for step in steps)
+        return all(float(np.linalg.norm(np.cross(step, direction))) < NEARLY * max(1e-30, float(np.linalg.norm(step))) for step in steps)
 
     def is_straight(self) -> bool:
         """Whether the control points lie on a line."""

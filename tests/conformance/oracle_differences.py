@@ -13,6 +13,7 @@ from typing import Any
 
 import brute_force
 import brute_force_curves
+import numpy as np
 import oracle_curve_differences
 from oracle_compare import CURVE_T, close, decide, mismatches, ray_scale, same_sequence
 from oracle_curve_differences import SECOND_CROSSING, crosses_again, curve_difference
@@ -29,6 +30,7 @@ EDGE = "rays through edges"
 UNDEFINED = "undefined ray"
 BEYOND_BINARY32 = "lengths beyond binary32"
 FAR_SPHERE = "spheres smaller than rounding"
+MOVING_BOX = "boxes between more than two keys"
 
 REASONS = {
     ORDER: "any-hit and intersection programs run in traversal order, which OptiX leaves open; the multiset of calls is the same",
@@ -39,6 +41,8 @@ REASONS = {
     EDGE: "edges follow a top-left rule there: an isolated one is open or closed by its direction, a shared one gives one call; in Embree "
     "edges are closed, and every triangle that meets in an edge is called",
     FAR_SPHERE: "the ray begins so far away that its coordinates are rounded by more than the sphere's size",
+    MOVING_BOX: "Embree bounds a box that moves through more than two keys by one that holds for more of them: intersection programs may "
+    "be called for rays that miss the box at their time",
     UNDEFINED: "NaN in the ray, or an infinite origin or direction, is undefined; here built-in primitives and boxes are missed",
     BEYOND_BINARY32: "the square of the direction's length leaves binary32: which primitives cope differs",
 } | oracle_curve_differences.REASONS
@@ -156,6 +160,7 @@ def _explain(probe: Probe, given: dict[str, Any], ours: list[dict[str, Any]], th
                    or _box_beyond(probe, given, event, ends))
     if _coincident(probe, given, ours + theirs):
         names |= _drop(left_ours, left_theirs, COINCIDENT, lambda event: _candidate(probe, given, event))
+    names |= _drop(left_ours, [], MOVING_BOX, lambda event: _near_moving_box(probe, given, event))
     if edges := brute_force.edges_passed(probe.scene, given):
         names |= _drop(left_ours, left_theirs, EDGE, lambda event: _after_edge(probe, given, event, edges))
     if left_ours or left_theirs:
@@ -256,6 +261,29 @@ def _box_beyond(probe: Probe, given: dict[str, Any], event: dict[str, Any], ends
     """Whether a custom primitive's box begins where the kept hit is or behind it; what it reports may lie before."""
     return event["ev"] != "MS" and bool(ends) and any(
         box.primitive == event["prim"] and box.enter >= max(ends) for box in brute_force.scene_boxes(probe.scene, given))
+
+
+def _near_moving_box(probe: Probe, given: dict[str, Any], event: dict[str, Any]) -> bool:
+    """Whether an intersection program that reports nothing was called for a primitive with more than two keys, and the ray meets the box
+    that moves evenly around them."""
+    if event["ev"] != "IS" or next(hit["data"] for hit in probe.hitgroups if hit["data"]["id"] == event["rec"]).get("reports"):
+        return False
+    scene = [_around_keys(node) if node["kind"] == "GAS" else node for node in probe.scene]
+    return any(box.primitive == event["prim"] and box.path.instance_index == event["instIdx"]
+               for box in brute_force.scene_boxes(scene, given))
+
+
+def _around_keys(node: dict[str, Any]) -> dict[str, Any]:
+    """A structure with two keys for the custom primitives of one with more, around all of them; others without what it holds."""
+    count = node.get("motion", {}).get("numKeys", 0)
+    inputs = []
+    for item in node["buildInputs"] if count > 2 else []:
+        if item["type"] == "custom":
+            keys = np.array([numbers(key) for key in item["aabbs"]]).reshape(count, -1, 2, 3)
+            even = np.linspace(keys[0], keys[-1], count)
+            beyond = np.stack([(keys - even)[:, :, 0].min(axis=0), (keys - even)[:, :, 1].max(axis=0)], axis=1)
+            inputs.append({**item, "aabbs": [(key + beyond).ravel().tolist() for key in (keys[0], keys[-1])]})
+    return {**node, "buildInputs": inputs, **({"motion": {**node["motion"], "numKeys": 2}} if inputs else {})}
 
 
 def _beyond(event: dict[str, Any], ends: list[float]) -> bool:
