@@ -6,7 +6,7 @@ from optixc.codegen.cpp_coop_vec import checked_spans, memory_call, values_of
 from optixc.codegen.cpp_expr import part_of
 from optixc.codegen.cpp_scalar_calls import timed
 from optixc.codegen.cpp_signatures import FunctionNames, Signatures
-from optixc.codegen.cpp_spmd_expr import PAYLOAD_SETTER, LaneExpressions
+from optixc.codegen.cpp_spmd_expr import LaneExpressions
 from optixc.codegen.cpp_spmd_items import ItemLoops, has_varying_index
 from optixc.codegen.cpp_spmd_types import WideTypes
 from optixc.codegen.names import string_literal
@@ -31,7 +31,7 @@ from optixc.ir.nodes import (
 )
 from optixc.ir.types import FixedArray, Struct
 from optixc.ir.walk import chosen_items
-from optixc.passes.traced_programs import known_flags
+from optixc.passes.traced_programs import PAYLOAD_SETTER, known_flags
 from optixc.passes.uniformity import Clone
 
 _HANDLE_ARGUMENT, _FLAGS_ARGUMENT = 0, 7

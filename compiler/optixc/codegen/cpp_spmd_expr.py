@@ -33,13 +33,14 @@ from optixc.ir.nodes import (
 )
 from optixc.ir.types import Scalar, ScalarKind, Struct, Tuple, Type, Vector, scalar_of
 from optixc.ir.walk import subexpressions
+from optixc.passes.traced_programs import PAYLOAD_GETTER
 from optixc.passes.uniformity import COMMON_IN_INTERSECTION, Clone, varies
 
 _THREAD_LANES = frozenset({"get_launch_index", "get_launch_dimensions"})
 _PER_LANE = frozenset({"transpose", "determinant", "inverse", "mul_hi"})
 """Mathematics without a form for lanes."""
 
-PAYLOAD_GETTER, PAYLOAD_SETTER, ATTRIBUTE_GETTER = "get_payload_", "set_payload_", "get_attribute_"
+ATTRIBUTE_GETTER = "get_attribute_"
 
 _HIT_LANES = frozenset(
     """get_world_ray_origin get_world_ray_direction get_object_ray_origin get_object_ray_direction get_ray_tmin

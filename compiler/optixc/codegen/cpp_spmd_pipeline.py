@@ -15,7 +15,7 @@ from optixc.codegen.cpp_scalar import ScalarFunction
 from optixc.codegen.cpp_signatures import used_parameters
 from optixc.codegen.cpp_spmd import LaneFunction
 from optixc.codegen.cpp_spmd_clones import Clones
-from optixc.codegen.cpp_spmd_expr import ATTRIBUTE_GETTER, PAYLOAD_GETTER, PAYLOAD_SETTER
+from optixc.codegen.cpp_spmd_expr import ATTRIBUTE_GETTER
 from optixc.codegen.cpp_spmd_types import WideTypes
 from optixc.codegen.helper_calls import callees_first
 from optixc.codegen.needs import EXCEPTION_FLAG_STACK_OVERFLOW, REPORT, options_of
@@ -26,10 +26,10 @@ from optixc.ir.layout import payload_words
 from optixc.ir.nodes import CallCallable, CallIntrinsic, Function, IntrinsicCall, ParameterRole, Pipeline
 from optixc.ir.programs import ProgramKind
 from optixc.ir.types import Struct, Void
-from optixc.ir.walk import expressions, statements
+from optixc.ir.walk import called_intrinsics, expressions, statements
 from optixc.passes.callables import CallableSignature, callables_with, signatures_called
 from optixc.passes.features import Features
-from optixc.passes.traced_programs import payload_of, reachable_functions, traces_of
+from optixc.passes.traced_programs import payload_of, reachable_functions, traces_of, words_by_number
 from optixc.passes.uniformity import COMMON_IN_INTERSECTION, Clone, Key
 
 _OF_RAY = frozenset(
@@ -141,7 +141,7 @@ class SpmdFile(PipelineFile):
         with self._writer.block(f"struct {name}Lanes : oxrt::NoLanePrograms", tail="};"):
             self._writer.line(f"using Scalar = {name};")
             self._writer.line(f"using Payload = {payload};")
-            if any(_uses_payload_words(self._pipeline, program) for _, functions in programs.present for program in functions):
+            if any(words_by_number(self._pipeline, program) for _, functions in programs.present for program in functions):
                 self._writer.line("static constexpr bool usesPayloadWords = true;")
             if any(_uses_payload(self._pipeline, program) for program in (*programs.anyhit, *programs.intersection)):
                 self._writer.line("static constexpr bool callbacksUsePayload = true;")
@@ -327,7 +327,7 @@ def _reads_hit(pipeline: Pipeline, program: Function) -> bool:
 def _uses_payload(pipeline: Pipeline, program: Function) -> bool:
     """Whether the program reads or writes the payload."""
     names = {p.local.name for p in program.parameters if p.role is ParameterRole.PAYLOAD}
-    return bool(names & used_parameters(program)) or _uses_payload_words(pipeline, program)
+    return bool(names & used_parameters(program)) or words_by_number(pipeline, program) > 0
 
 
 def _reads_attributes(pipeline: Pipeline, programs: ProgramClass) -> bool:
@@ -338,7 +338,7 @@ def _reads_attributes(pipeline: Pipeline, programs: ProgramClass) -> bool:
         given = {parameter.local.name for parameter in program.parameters if parameter.role is ParameterRole.ATTRIBUTES}
         if given & used_parameters(program):
             return True
-        asked = (e.name for f in reachable_functions(pipeline, program) for e in expressions(f.body) if isinstance(e, IntrinsicCall))
+        asked = (name for function in reachable_functions(pipeline, program) for name in called_intrinsics(function.body))
         if any(name.startswith(ATTRIBUTE_GETTER) for name in asked):
             return True
     return False
@@ -354,13 +354,3 @@ def _reported_words(pipeline: Pipeline, program: Function) -> int:
                 is_struct = len(offered) == 1 and isinstance(offered[0].type, Struct)
                 most = max(most, payload_words(offered[0].type) if is_struct else len(offered))
     return most
-
-
-def _uses_payload_words(pipeline: Pipeline, program: Function) -> bool:
-    """Whether the program or a helper addresses payload registers by number."""
-    for function in reachable_functions(pipeline, program):
-        names = [e.name for e in expressions(function.body) if isinstance(e, IntrinsicCall)]
-        names += [statement.name for statement in statements(function.body) if isinstance(statement, CallIntrinsic)]
-        if any(name.startswith((PAYLOAD_GETTER, PAYLOAD_SETTER)) for name in names):
-            return True
-    return False

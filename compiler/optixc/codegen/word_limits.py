@@ -9,7 +9,7 @@ from optixc.ir.layout import payload_words
 from optixc.ir.nodes import CallIntrinsic, Function, IntrinsicCall, ParameterRole, Pipeline
 from optixc.ir.types import Struct
 from optixc.ir.walk import expressions, statements
-from optixc.passes.traced_programs import payload_of, traces_of
+from optixc.passes.traced_programs import PAYLOAD_GETTER, PAYLOAD_SETTER, payload_of, traces_of
 from optixc.source import Span
 
 SMALLEST_ATTRIBUTE_LIMIT = 2
@@ -45,7 +45,7 @@ def _payload_uses(pipeline: Pipeline) -> Iterator[tuple[int, str, Span]]:
     for _, trace in traces_of(pipeline):
         if trace.payload_type is not None:
             yield payload_words(trace.payload_type), f"the payload of {trace.name}()", trace.span
-    yield from _numbered(pipeline, ("get_payload_", "set_payload_"))
+    yield from _numbered(pipeline, (PAYLOAD_GETTER, PAYLOAD_SETTER))
 
 
 def _attribute_uses(pipeline: Pipeline) -> Iterator[tuple[int, str, Span]]:

@@ -183,6 +183,12 @@ def called_helpers(body: Body) -> Iterator[str]:
                     yield part.function
 
 
+def called_intrinsics(body: Body) -> Iterator[str]:
+    """Names of the device functions that a body calls, for their values and as statements."""
+    yield from (one.name for one in expressions(body) if isinstance(one, IntrinsicCall))
+    yield from (one.name for one in statements(body) if isinstance(one, CallIntrinsic))
+
+
 def place_origin(place: Expr) -> Expr:
     """What a chain of fields, components and indices starts from."""
     while isinstance(place, FieldRef | ComponentRef | IndexRef | TupleItem):

@@ -15,8 +15,8 @@ from optixc.ir.types import Scalar, ScalarKind, Struct, Texture, Traversable, Ty
 from optixc.ir.walk import Body, expressions, map_blocks, place_root
 from optixc.passes.live_flow import REGISTERS, Liveness, is_payload
 from optixc.passes.live_words import full, place_words, words_of
-from optixc.passes.liveness import addresses_registers, liveness
-from optixc.passes.traced_programs import payload_of, traces_of
+from optixc.passes.liveness import liveness
+from optixc.passes.traced_programs import address_registers, payload_of, traces_of
 
 
 def drop_dead_words(pipeline: Pipeline) -> Pipeline:
@@ -37,7 +37,7 @@ def unread_fields(pipeline: Pipeline) -> dict[Struct, frozenset[str]]:
     """Fields of payload classes that no function mentions, where nothing else knows them by their number of words."""
     functions = (*pipeline.helpers, *pipeline.programs)
     payloads = {struct for struct in _payloads(pipeline) if struct.fields}
-    if pipeline.options.debug or pipeline.options.validation or any(addresses_registers(function.body) for function in functions):
+    if pipeline.options.debug or pipeline.options.validation or address_registers(functions):
         return {}
     mentioned = {
         (node.base.type, node.name) for function in functions for node in expressions(function.body) if isinstance(node, FieldRef)

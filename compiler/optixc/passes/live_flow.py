@@ -41,12 +41,12 @@ from optixc.ir.programs import ProgramKind
 from optixc.ir.types import Struct, StructKind, Type
 from optixc.ir.walk import Body, operands, statements
 from optixc.passes.live_words import State, Words, full, joined, place_words, with_words, without_words, words_of
+from optixc.passes.traced_programs import PAYLOAD_GETTER, PAYLOAD_SETTER, register_number
 
 REGISTERS = "payload registers"
 """The payload of a program, and the registers by number everywhere: no author's name has a space."""
 
 IN_TRAVERSAL = (ProgramKind.ANYHIT, ProgramKind.INTERSECTION)
-GETTER, SETTER = "get_payload_", "set_payload_"
 EMPTY: State = {}
 ALL_REGISTERS = full(32)
 
@@ -243,7 +243,7 @@ class Flow:
 
     def _intrinsic(self, call: CallIntrinsic, behind: State) -> State:
         state = self._given_value(call.target, behind)
-        written = register_number(call.name, SETTER)
+        written = register_number(call.name, PAYLOAD_SETTER)
         if written is not None:
             state = without_words(state, REGISTERS, 1 << written)
         if ends_program(call):
@@ -329,7 +329,7 @@ class Flow:
                 words = with_words(words, place.local, place.mask)
                 stack.extend(_indices(node))
                 continue
-            if isinstance(node, IntrinsicCall) and (number := register_number(node.name, GETTER)) is not None:
+            if isinstance(node, IntrinsicCall) and (number := register_number(node.name, PAYLOAD_GETTER)) is not None:
                 words = with_words(words, REGISTERS, 1 << number)
             if isinstance(node, HelperCall):
                 helpers.append(node.function)
@@ -392,9 +392,3 @@ def references_of(function: Function) -> State:
 def ends_program(call: CallIntrinsic) -> bool:
     """Whether the program may end here, or other programs run that take its payload."""
     return INTRINSICS[call.name].effect in (Effect.ENDS_PROGRAM, Effect.ENDS_LAUNCH_INDEX) or call.name == "report_intersection"
-
-
-def register_number(name: str, prefix: str) -> int | None:
-    """The register that a device function addresses."""
-    number = name.removeprefix(prefix)
-    return int(number) if name.startswith(prefix) and number.isdigit() else None

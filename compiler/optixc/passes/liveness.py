@@ -17,7 +17,6 @@ from optixc.ir.nodes import (
     Expr,
     Function,
     HelperCall,
-    IntrinsicCall,
     Pipeline,
     Trace,
 )
@@ -25,20 +24,17 @@ from optixc.ir.programs import ProgramKind
 from optixc.ir.walk import Body, expressions, statements
 from optixc.passes.live_flow import (
     EMPTY,
-    GETTER,
     IN_TRAVERSAL,
     REGISTERS,
-    SETTER,
     Flow,
     Known,
     Liveness,
     ends_program,
     only,
     references_of,
-    register_number,
 )
 from optixc.passes.live_words import State, joined, place_words
-from optixc.passes.traced_programs import may_run, reachable_functions, traces_of
+from optixc.passes.traced_programs import address_registers, may_run, reachable_functions, traces_of
 
 _BEHIND_TRAVERSAL = (ProgramKind.CLOSESTHIT, ProgramKind.MISS)
 _KINDS = {"trace": (*IN_TRAVERSAL, *_BEHIND_TRAVERSAL), "traverse": IN_TRAVERSAL, "invoke": _BEHIND_TRAVERSAL}
@@ -68,7 +64,7 @@ class _Analysis:
             writes={function.name: references_of(function) for function in self.functions},
             run_by={id(trace): self._programs_of(trace) for _, trace in traces_of(pipeline)},
             ending={name for name, helper in self.helpers.items() if _may_end(pipeline, helper)},
-            by_number=any(addresses_registers(function.body) for function in self.functions),
+            by_number=address_registers(self.functions),
             payloads_only=payloads_only,
         )
         self.result = Liveness(pinned=self._aliased())
@@ -81,7 +77,7 @@ class _Analysis:
 
     def _aliased(self) -> set[str]:
         """Helpers whose references may name one struct twice; all of them where helpers address registers by number."""
-        if any(addresses_registers(helper.body) for helper in self.pipeline.helpers):
+        if address_registers(self.pipeline.helpers):
             return set(self.helpers)
         several = {name for name, helper in self.helpers.items() if sum(p.local.by_reference for p in helper.parameters) > 1}
         found: set[str] = set()
@@ -134,13 +130,6 @@ def _may_end(pipeline: Pipeline, helper: Function) -> bool:
     """Whether a helper may end the program that called it."""
     calls = (s for f in reachable_functions(pipeline, helper) for s in statements(f.body) if isinstance(s, CallIntrinsic))
     return any(ends_program(call) for call in calls)
-
-
-def addresses_registers(body: Body) -> bool:
-    """Whether payload registers are read or written by number."""
-    names = [one.name for one in expressions(body) if isinstance(one, IntrinsicCall)]
-    names += [one.name for one in statements(body) if isinstance(one, CallIntrinsic)]
-    return any(register_number(name, prefix) is not None for name in names for prefix in (GETTER, SETTER))
 
 
 def _calls(body: Body) -> Iterable[tuple[str, tuple[Expr, ...]]]:

@@ -6,16 +6,14 @@ the payload's last.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 
 from optixc.ir.layout import payload_scalars, payload_words
 from optixc.ir.nodes import (
     Binary,
     BinaryOp,
-    CallIntrinsic,
     Expr,
     Function,
-    IntrinsicCall,
     Literal,
     ParameterRole,
     Pipeline,
@@ -23,10 +21,10 @@ from optixc.ir.nodes import (
 )
 from optixc.ir.programs import ProgramKind
 from optixc.ir.types import Struct
-from optixc.ir.walk import called_helpers, expressions, statements
+from optixc.ir.walk import Body, called_helpers, called_intrinsics, statements
 
 RAY_DISABLE_CLOSESTHIT = 8
-_WORD_PREFIXES = ("get_payload_", "set_payload_")
+PAYLOAD_GETTER, PAYLOAD_SETTER = "get_payload_", "set_payload_"
 
 
 def traces_of(pipeline: Pipeline) -> Iterator[tuple[Function, Trace]]:
@@ -51,7 +49,7 @@ def accepts(pipeline: Pipeline, program: Function, payload: Struct | None) -> bo
     own = payload_of(program)
     if own is not None and (payload is None or (own != payload and tuple(payload_scalars(own)) != tuple(payload_scalars(payload)))):
         return False
-    return _words_used(pipeline, program) <= (payload_words(payload) if payload is not None else 0)
+    return words_by_number(pipeline, program) <= (payload_words(payload) if payload is not None else 0)
 
 
 def reachable_functions(pipeline: Pipeline, start: Function) -> list[Function]:
@@ -92,13 +90,26 @@ def constant(expression: Expr) -> int | None:
             return None
 
 
-def _words_used(pipeline: Pipeline, program: Function) -> int:
-    """One more than the highest payload register that the program or a helper addresses by number."""
-    highest = 0
-    for function in reachable_functions(pipeline, program):
-        names = [e.name for e in expressions(function.body) if isinstance(e, IntrinsicCall)]
-        names += [s.name for s in statements(function.body) if isinstance(s, CallIntrinsic)]
-        for name in names:
-            if name.startswith(_WORD_PREFIXES):
-                highest = max(highest, int(name.rsplit("_", 1)[1]) + 1)
-    return highest
+def words_by_number(pipeline: Pipeline, program: Function) -> int:
+    """One more than the highest payload register that the program or a helper addresses by number; 0 if they address none."""
+    return max((number + 1 for function in reachable_functions(pipeline, program) for number in registers(function.body)), default=0)
+
+
+def registers(body: Body) -> Iterator[int]:
+    """The payload registers that are read or written by number."""
+    for name in called_intrinsics(body):
+        for prefix in (PAYLOAD_GETTER, PAYLOAD_SETTER):
+            number = register_number(name, prefix)
+            if number is not None:
+                yield number
+
+
+def address_registers(functions: Iterable[Function]) -> bool:
+    """Whether any of the functions reads or writes a payload register by number."""
+    return any(True for function in functions for _ in registers(function.body))
+
+
+def register_number(name: str, prefix: str) -> int | None:
+    """The register that a device function addresses."""
+    number = name.removeprefix(prefix)
+    return int(number) if name.startswith(prefix) and number.isdigit() else None
